@@ -50,10 +50,16 @@ _COSTLY = Path(__file__).parent / "tests" / "costly.txt"
 """Tests that are slow because of what they cost, as ``pytest -m "" --costs SECONDS`` measured it."""
 
 
+def _share(text: str) -> float:
+    if not 0.0 < (share := float(text)) <= 1000.0:
+        raise ValueError(text)
+    return share
+
+
 def pytest_addoption(parser: pytest.Parser) -> None:
     """Declare how many random cases are made, and that costs are measured."""
     words = "share of the random cases that slow tests make, of those that they make by themselves (1)"
-    parser.addoption("--effort", metavar="SHARE", type=float, default=1.0, help=words)
+    parser.addoption("--effort", metavar="SHARE", type=_share, default=1.0, help=words)
     words = f"list tests that take longer than this [s of processor time] in {_COSTLY.name}: they are slow"
     parser.addoption("--costs", metavar="SECONDS", type=float, help=words)
     words = "folder to keep a picture of each stage in when tests/test_lessons_played.py plays the lessons"
