@@ -25,7 +25,7 @@ _SECONDS = Field("seconds", "number", minimum=0.0, unit="s", owner="run")
 _STRIDE = Field("stride", "whole", minimum=1, owner="stepping")
 _AT_MOST = Field("at_most", "number", above=0.0, unit="s", owner="run")
 _SAMPLED = 32_768
-"""Samples of a body that are taken at most before systems look at them."""
+"""Samples of bodies that are taken at most before systems look at them."""
 _LOOK_S, _LOOK_STEPS = 0.1, 1000
 """So long [s], and so many steps of smooth motion, a run goes on before the clock is looked at."""
 
@@ -211,12 +211,12 @@ def _go_on(
     world.synchronise()
     h = length.dt if done < length.whole else length.rest
     wanted = stride() - done % stride()
-    taken, watched = world.samples, world.schedule.samplers
-    if world.schedule.observer is not None or (watched and taken is not None and taken.stride > 1):
+    taken = world.samples
+    if world.schedule.observer is not None:
         return world.advance(h, 1)
-    if watched and taken is None:
-        wanted = max(1, min(wanted, length.whole - done, _SAMPLED // max(1, len(moving_rows(world)))))
-        world.samples = Samples(world, world.time, h, 1, wanted)
+    if world.schedule.samplers:
+        wanted = max(1, min(wanted, length.steps - done, _SAMPLED // max(1, len(moving_rows(world)))))
+        world.samples = taken or Samples(world, world.time, h, 1, wanted)
     try:
         return _advance(world, length, done, h, wanted, at_once, is_patient)
     finally:
@@ -226,7 +226,7 @@ def _go_on(
 def _advance(
     world: Stepped, length: RunLength, done: int, h: float, wanted: int, at_once: int, is_patient: bool
 ) -> int:
-    """Advance by at most ``wanted`` steps of ``h`` seconds as far as one call goes; return how many it made."""
+    """Advance by at most ``wanted`` steps of ``h`` seconds, as far as one call goes; return how many."""
     best = world.stepper_for(h)
     count = max(1, min(wanted, length.whole - done, world.steps_ahead(h)))
     if not best.leaps:
