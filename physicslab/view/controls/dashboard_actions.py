@@ -48,7 +48,7 @@ def plot_selected(world: World, window: Window) -> None:
     bodies = window.selection.bodies(world)
     if not window.selection.entities and not window.pointer_on_panel:
         body = body_at(world, window.camera, window.pointer)
-        bodies = () if body is None or not world.has(body, Velocity) else (body,)
+        bodies = [] if body is None or not world.has(body, Velocity) else [body]
     if not bodies:
         pulls = _pulls(world, window)
         energies: list[Key] = [(None, name) for name in _ENERGIES]
