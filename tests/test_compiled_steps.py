@@ -88,7 +88,9 @@ def why_not_fused(world: World) -> str | None:
 
 def figures(world: World) -> tuple[object, ...]:
     """Return what a run leaves behind, apart from the state of motion."""
-    calls = {name: timing.calls for name, timing in world.schedule.timings.items() if name not in LOOKING}
+    sampled = {system.name for system in world.schedule.systems if system.sampled}
+    timings = world.schedule.timings.items()
+    calls = {name: timing.calls for name, timing in timings if name not in {*LOOKING, *sampled}}
     counts = world.steps, world.collisions, world.force_evaluations, world.step_divisions, world.substeps
     contacts = world.contacts
     near = (

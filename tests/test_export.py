@@ -133,8 +133,17 @@ def test_the_view_of_a_page_holds_the_runs_of_all_its_values(tmp_path: Path) -> 
     scene, seconds = str(tmp_path / "scene.json"), ("--seconds", "1")
     one = all_of(exported(tmp_path / "page.html", scene, *seconds))
     assert one["view"] == [*world.view]
-    many = all_of(exported(tmp_path / "page.html", scene, *seconds, "--vary", "bob.Rod.length=1:3:3"))["view"]
-    assert many[1] < 0.0 < world.view[3] <= many[3]
+    many = all_of(exported(tmp_path / "page.html", scene, *seconds, "--vary", "bob.Rod.length=1:3:3"))
+    assert many["view"][1] < 0.0 < world.view[3] <= many["view"][3]
+    for length, run in zip(
+        (1.0, 2.0, 3.0), many["runs"], strict=True
+    ):  # the first picture had the bob at 2 m
+        columns, others = unpack(run["data"], run["instants"]), 1 + len(run["energies"])
+        x, y = columns[:, others + len(run["quantities"]) :][:, :2].T
+        assert np.hypot(x, y - 3.0) == pytest.approx(length, rel=1e-6)
+        assert columns[:, others - 1] == pytest.approx(columns[0, others - 1], rel=1e-6), (
+            "no energy was taken"
+        )
 
 
 def test_a_page_goes_on_from_the_time_of_its_scene(tmp_path: Path) -> None:

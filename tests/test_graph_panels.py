@@ -13,6 +13,7 @@ from plotting import ball_of, drawn_lines, graph_of, pause
 from physicslab import load_scene
 from physicslab.components import Graph, GraphLine, Velocity
 from physicslab.history import Spawn
+from physicslab.view.canvas.pygame_canvas import PygameCanvas
 from physicslab.view.controls import dashboard_actions, saving
 from physicslab.view.controls.lesson_actions import choose_language
 from physicslab.view.toolkit.ui import Ui
@@ -140,3 +141,14 @@ def test_in_a_small_window_a_plot_beside_the_stopwatch_is_readable_and_its_hint_
     desk.frames(SETTLED)
     assert desk.ui.places["Plot of graph 1"][3] >= 5 * desk.sandbox.interface.text
     assert not wide["Draw a gate for bodies to cross"]
+
+
+def test_in_a_small_window_no_line_below_a_plot_is_seen_in_half() -> None:
+    desk = sized((800, 600), load_scene("pendulum"), 1.5)
+    _, top, _, height = desk.ui.places["Plot of graph 1"]
+    left, bottom = desk.ui.places["Lines of graph 1"][0], desk.sandbox.interface.layout.transport[1]
+    canvas = desk.window.canvas
+    assert isinstance(canvas, PygameCanvas)
+    below = pygame.surfarray.array3d(canvas.surface)[left : left + 90, top + height : bottom]
+    rows = (np.abs(below.astype(int) - np.array(desk.window.theme.panel)).max(axis=2) > 100).any(axis=0)
+    assert not rows[-round(1.2 * desk.sandbox.interface.text) :].any()

@@ -1,13 +1,14 @@
 """HudSystem: the right figures, readable at any size of window."""
 
 import itertools
+import math
 import re
 from dataclasses import replace
 from typing import Any
 
 import pygame
 import pytest
-from desk import FRAME, Desk, empty_world
+from desk import FRAME, SETTLED, Desk, empty_world, sized
 from recording import RecordingCanvas
 
 from physicslab.components import Transform
@@ -214,6 +215,20 @@ def test_numbers_are_read_five_times_a_second_and_not_more_often() -> None:
         desk.frames()
         seen.append(row(desk, "Kinetic energy"))
     assert 4 <= len(list(itertools.groupby(seen))) <= 6
+
+
+@pytest.mark.parametrize(("size", "scale"), [((1280, 720), 1.0), ((800, 600), 1.5)])
+def test_no_orbit_leads_behind_the_banner_of_planet_mode(size: tuple[int, int], scale: float) -> None:
+    world = load_scene("solar_system")
+    desk = sized(size, world, scale)
+    desk.window.framing.go_home(world)
+    desk.frames(SETTLED)
+    left, top, width, _ = desk.window.framing.room()
+    banner = next(one for one in desk.window.overlays.covered if one[1] < top + desk.sandbox.interface.text)
+    star, *planets = world.table(Transform)["position"][world.batch(Transform).rows]
+    largest = max(math.dist(star, planet) for planet in planets)
+    _, above = desk.pixel(star[0], star[1] + largest)
+    assert left < banner[0] < left + width and above > banner[1] + banner[3] + 5
 
 
 NUMBER = re.compile(r"-?[\d.]+(e[+-]?\d+)?")

@@ -96,6 +96,15 @@ def test_a_spring_is_a_coil_from_body_to_bracket() -> None:
     assert np.isclose(end, (640, 260)).all(axis=1).any()
 
 
+def test_over_a_body_a_spring_is_straight() -> None:
+    world = empty_world()
+    world.spawn(Spring(a=hung(world, (0, -1)), anchor_b=(0, 0), rest_length=1.0, stiffness=30.0))
+    start, end = of_colour(strokes(world), DARK.spring)
+    on_it = np.hypot(*(end - (640, 460)).T) < 19.0
+    assert np.allclose(start[on_it], (640, 460)), "a line from its middle, and its end"
+    assert np.ptp(start[:, 0]) > 5.0, "a coil beside it"
+
+
 def test_a_spring_that_hardly_gives_is_a_string_and_so_are_very_many() -> None:
     world = empty_world()
     world.spawn(Spring(a=hung(world, (0, -1)), anchor_b=(0, 1), rest_length=2.0, stiffness=50_000.0))

@@ -86,6 +86,20 @@ def test_no_spark_flies_into_a_floor() -> None:
     assert len(sparks) > 20 and (sparks.place[:, 1] >= -1e-6).all() and (sparks.velocity[:, 1] >= -1e-9).all()
 
 
+def test_no_ring_is_drawn_into_a_floor_a_wall_or_a_ceiling() -> None:
+    for side, gravity in ((1.0, -9.81), (-1.0, 9.81)):
+        world = empty_world(gravity=(0.0, gravity))
+        box(world, (0, -0.5 * side), width=20, height=1, static=True, restitution=1.0)
+        circle(world, (0, 0.3 * side), radius=0.25, velocity=(0.0, -5.0 * side), restitution=1.0)
+        watched, canvas = Watched(world), RecordingCanvas((400, 300))
+        while not len(watched.sparks.rings):
+            watched.frames()
+        watched.sparks.draw(Camera(canvas.size), DARK, canvas)
+        (ring,) = canvas.called("lines")
+        above = side * (150.0 - ring["start"][:, 1])
+        assert (above >= -0.5).all() and above.max() > 3.0
+
+
 def test_sparks_are_light_on_dark_and_ink_on_paper() -> None:
     sparks = first_sparks(meeting(6.0, mass=3.0))
     for theme, lights in ((DARK, 1), (PROJECTOR, 0)):

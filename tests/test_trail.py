@@ -100,3 +100,52 @@ def test_recording_changes_no_bit_of_the_world(name: str) -> None:
     plain.run(steps=300)
     recorded.run(steps=300)
     assert bits(plain) == bits(recorded)
+
+
+def of_trails(world: World) -> TrailSystem:
+    system = world.schedule.find(TrailSystem)
+    assert system is not None
+    return system
+
+
+@pytest.mark.parametrize("length", [0.3, 1.0, 3.1, 40.0])
+def test_one_call_of_many_steps_records_what_single_steps_do(length: float) -> None:
+    (one, long, body), (other, short, _) = gliding(length), gliding(length)
+    still, _ = (world.spawn(Transform((0, 3)), Trail(length)) for world in (one, other))
+    other.component(still, Trail).length = one.component(still, Trail).length = 2.0 * length
+    one.run(steps=700)
+    for _ in range(700):
+        other.step()
+    assert one.schedule.timings["TrailSystem"].calls == 1
+    assert other.schedule.timings["TrailSystem"].calls == 700
+    for of in (body, still):
+        (places, times), (expected, at) = long.path(of), short.path(of)
+        assert len(times) == len(at) and np.allclose(places, expected, rtol=0.0, atol=1e-12)
+        assert np.allclose(times, at, rtol=0.0, atol=1e-12)
+
+
+def test_islands_and_recorded_runs_leave_a_trail() -> None:
+    worlds = [load_scene("crossed_fields") for _ in range(4)]
+    for _ in range(150):
+        worlds[0].step()
+    worlds[1].run(steps=150)
+    worlds[2].record(seconds=150 * worlds[2].simulation.dt)
+    worlds[3].record(seconds=150 * worlds[3].simulation.dt, every=0.1)
+    assert worlds[1].islands.members
+    for world in worlds[1:]:
+        for entity in of_trails(world).entities.tolist():
+            (places, times), (expected, at) = of_trails(world).path(entity), of_trails(worlds[0]).path(entity)
+            assert np.allclose(times, at, rtol=0.0, atol=1e-9)
+            assert np.allclose(places, expected, rtol=0.0, atol=1e-9)
+
+
+def test_what_is_undone_and_made_again_is_recorded_once() -> None:
+    world = load_scene("two_planets")
+    world.mark()
+    world.run(steps=300)
+    first = [of_trails(world).path(entity) for entity in of_trails(world).entities.tolist()]
+    world.reset()
+    world.run(steps=300)
+    again = [of_trails(world).path(entity) for entity in of_trails(world).entities.tolist()]
+    for (places, times), (expected, at) in zip(again, first, strict=True):
+        assert np.array_equal(times, at) and np.array_equal(places, expected)

@@ -14,6 +14,7 @@ from physicslab.commands.output import Output
 from physicslab.commands.progress import Progress
 from physicslab.commands.usage import POSES
 from physicslab.commands.variations import Variation, combinations, variations
+from physicslab.diagnostics.joint_closing import close_joints
 from physicslab.ecs.fields import InvalidValue
 from physicslab.ecs.text import printable, shortened
 from physicslab.export.film import Film, NoEncoder
@@ -192,6 +193,8 @@ def make_run(task: str) -> dict[str, Any]:
     arguments = Namespace(**json.loads(task))
     try:
         world = opened(arguments, again=True)
+        if arguments.set:
+            close_joints(world)  # or the first picture has the rod's former length, and its energy
         name = name_of(world, arguments)
         recorder = RunRecorder(world)
         with Tiers(is_small(world)) as tiers:

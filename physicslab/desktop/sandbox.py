@@ -92,6 +92,7 @@ class Sandbox:
         self.interface = Interface(window)
         window.framing.room, window.framing.small = self.interface.room, self.interface.small
         hud = Hud(window, self.interface)
+        window.framing.above = hud.above
         self._events = WindowEvents(window, self.interface.take)
         self._systems = (
             InputSystem(pygame.event.get, self._events),

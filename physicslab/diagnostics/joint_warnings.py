@@ -5,15 +5,15 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Held, Material, Rod, Transform
+from physicslab.components import Held, Material, Rod
 from physicslab.diagnostics.contact_warnings import contact_graph, rigid_setting
 from physicslab.diagnostics.energy import measure_account, measure_kinetic
+from physicslab.diagnostics.joint_closing import closing_places
 from physicslab.diagnostics.step_warnings import ModelWarning
 from physicslab.ecs.sentences import sentence
 from physicslab.kernels.joints.blocks import ACTIVE, GIVES, ROW, STATE
 from physicslab.kernels.joints.measured import AX, BX, BY, TURN_A
 from physicslab.state.joint_figures import (
-    errors_of_rows,
     figures_of,
     joints_of_rows,
     measured_terms,
@@ -35,8 +35,8 @@ the energy and more; each tenfold beyond costs four, until a row is taken for th
 LOST_LIMIT = 0.1
 """Share of the energy exchanged that joints may have taken where bodies that they hold bounce: elastic discs
 in pairs on rods lose half of theirs in a second, and nothing where contacts are rigid."""
-_MOST_ROWS, _TURNS = 100, 12
-"""Number of rows up to which it is looked for contradictions, and how often it is tried to close them."""
+_MOST_ROWS = 100
+"""Number of rows up to which it is looked for contradictions."""
 
 
 def joint_warnings(world: World) -> Iterator[ModelWarning]:
@@ -149,29 +149,9 @@ def _bounces(world: World) -> Iterator[ModelWarning]:
 
 def _contradict(world: World, limit: float) -> bool:
     """Whether the rows that hold cannot all be closed, from where bodies are."""
-    joints, transform = world.joints, world.table(Transform)
-    held, owner = joints.role == Role.HOLD, rows_of_terms(world)
-    if np.count_nonzero(held) > _MOST_ROWS:
+    if np.count_nonzero(world.joints.role == Role.HOLD) > _MOST_ROWS:
         return False
-    position, angle = transform["position"].copy(), transform["angle"].copy()
-    bodies = world.bodies
-    give = np.sqrt(np.stack((bodies.inverse_mass, bodies.inverse_mass, bodies.inverse_inertia), axis=1))
-    for _ in range(_TURNS):
-        terms = measured_terms(world, position, angle)
-        error = np.where(held, errors_of_rows(world, terms), 0.0)
-        if np.abs(error).max() < 0.5 * limit:
-            return False
-        gradient = np.zeros((len(joints), len(angle), 3))
-        pulls = joints.scale[:, None] * terms
-        np.add.at(gradient, (owner, joints.a), pulls[:, AX : TURN_A + 1])
-        np.add.at(gradient, (owner, joints.b), pulls[:, BX:])
-        moved = (gradient * give)[held].reshape(-1, give.size)
-        closing = np.linalg.lstsq(moved, -error[held], rcond=1e-6)[0].reshape(give.shape) * give
-        # No farther at once than errors reach: rods in line do not say which way they would close.
-        closing *= min(1.0, np.abs(error).sum() / max(np.abs(closing[:, :2]).max(), 1e-300))
-        position += closing[:, :2]
-        angle += closing[:, 2]
-    return True
+    return closing_places(world, 0.5 * limit) is None
 
 
 def _dependent(world: World) -> NDArray[np.bool_]:

@@ -78,13 +78,23 @@ def _recorded(
     world: World, length: RunLength, stride: int, reader: ImpactReader, records: list[NDArray[Any]]
 ) -> Samples:
     """Make a whole run; the world ends with the bits of :meth:`World.run`."""
-    samples = Samples(world, world.time, length.dt, stride, length.steps)
-    world.samples = samples
+    finest = 1 if world.schedule.samplers else stride
+    world.samples = samples = Samples(world, world.time, length.dt, finest, length.steps)
     for _ in strides_as_it_goes(world, length.seconds, None, lambda: _stride(world), math.inf):
         records += reader.read()
     if reader.lost:
         _log.warning("record: %d impacts were not kept, more than the log holds", reader.lost)
+    return _thinned(world, samples, stride // finest)
+
+
+def _thinned(world: World, samples: Samples, stride: int) -> Samples:
+    """Return every ``stride``-th of the samples, and the state of now as the last."""
     samples.finish(world, world.time)
+    if stride > 1:
+        last = samples.count - 1
+        kept = np.unique(np.append(np.arange(0, samples.count, stride), last))
+        samples.times, samples.motion = samples.times[kept], samples.motion[kept]
+        samples.count = len(kept)
     return samples
 
 
@@ -150,7 +160,7 @@ class _Watch:
             self._records += self._reader.read()
             done, ahead = done + count, min(2 * ahead, most)
         world.samples = None
-        return self._thinned(every, stride), found
+        return _thinned(world, every, stride), found
 
     def _advance(self, samples: Samples, seconds: float, time: float) -> None:
         """Make some steps, of which every one is sampled."""
@@ -220,17 +230,6 @@ class _Watch:
 
     def _now(self) -> Figures:
         return Figures(self._record, None, len(self._record.times) - 1)
-
-    def _thinned(self, samples: Samples, stride: int) -> Samples:
-        """Return every ``stride``-th of the samples, and the state of now as the last."""
-        world = self._world
-        samples.finish(world, world.time)
-        if stride > 1:
-            last = samples.count - 1
-            kept = np.unique(np.append(np.arange(0, samples.count, stride), last))
-            samples.times, samples.motion = samples.times[kept], samples.motion[kept]
-            samples.count = len(kept)
-        return samples
 
 
 class _Replay:

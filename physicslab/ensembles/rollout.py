@@ -110,7 +110,7 @@ class Rollout:
         """Whether runs of a length are calls of this stepper, from the moment at which the world is."""
         schedule = self._world.schedule
         fields = _BETWEEN_IMPACTS if isinstance(stepper, EventDriven) else _ANY_TIME
-        watched = schedule.observer is not None or any(schedule.at(stage) for stage in AROUND)
+        watched = any(not system.sampled for stage in AROUND for system in schedule.at(stage))
         return bool(
             length.steps and self._fields <= fields and not watched and not len(self._world.remainders.keys)
         )

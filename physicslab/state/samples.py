@@ -52,7 +52,7 @@ class Samples:
     """
 
     def __init__(self, state: Entities, time: float, dt: float, stride: int, steps: int) -> None:
-        self.rows = _moving_rows(state)
+        self.rows = moving_rows(state)
         self._start, self.dt, self.stride, self._first = time, dt, stride, 0
         room = steps // stride + 2
         self.times = np.full(room, np.nan)
@@ -91,7 +91,7 @@ class Samples:
         """Return samples of another world, such as an island, for ``span`` seconds from a time [s] on."""
         places, _ = self.due(time, span)
         part = copy(self)
-        part.rows = _moving_rows(state)
+        part.rows = moving_rows(state)
         part._first = part.count = int(places[0]) if len(places) else 0
         part.times = np.full(len(places), np.nan)
         part.motion = np.full((len(places), len(part.rows), FIELDS), np.nan)
@@ -102,6 +102,11 @@ class Samples:
         places = np.arange(part._first, part.count)
         columns = np.searchsorted(self.rows, there), np.searchsorted(part.rows, own)
         self.put(places, part.times[: len(places)])[:, columns[0]] = part.motion[: len(places), columns[1]]
+
+    def between(self, early: float, late: float) -> range:
+        """Return the numbers in ``motion`` of the samples between two times [s], without their ends."""
+        known, rounding = self.times[: self.count - self._first], _LATE * self.dt
+        return range(*np.searchsorted(known, (early + rounding, late - rounding)).tolist())
 
     def repeat(self, state: Entities, time: float, span: float) -> None:
         """Take the state as it is for all samples within ``span`` seconds from a time [s] on."""
@@ -127,7 +132,7 @@ class Samples:
         return math.floor((time - self._start) / self.dt + _LATE)
 
 
-def _moving_rows(state: Entities) -> NDArray[np.int64]:
+def moving_rows(state: Entities) -> NDArray[np.int64]:
     """Return the rows of what moves (moving,)."""
     return np.flatnonzero(state.table(Transform).present & state.table(Velocity).present)
 

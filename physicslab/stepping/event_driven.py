@@ -34,6 +34,7 @@ _LOW = (1, 3, 5, 7)
 _MASS = 12
 """The column of the mass that gravity accelerates."""
 _run_events: Callable[..., tuple[int, int, int, int, float]] = events.run_events
+_BOTH = np.arange(2)
 _IMPACT_FIELDS = ("approach_speed", "impact_normal", "impact_tangent")
 
 
@@ -126,7 +127,7 @@ class EventDriven(Stepper):
         start = [column.copy() for column in motion_of(state)]
         collisions, logged = state.collisions, state.contacts.logged
         booked, why, begun = state.account.sums.copy(), events.CAME_TO_REST, 0.0
-        if (_held(state) & self._ballistic).any():
+        if self._ballistic[_held(state)].any():
             return 0, why, 0.0
         while steps:
             self._recall_remainders(state)
@@ -245,12 +246,16 @@ class EventDriven(Stepper):
         return make
 
 
-def _held(state: State) -> NDArray[np.bool_]:
-    """Return which rows (rows,) another body presses on, or overlaps deeply, after a step made by others."""
-    contacts = state.contacts
+def _held(state: State) -> NDArray[np.int64]:
+    """Return the rows (n,) of what another body presses on, or overlaps deeply, after a step made by others.
+
+    Row 0 stands for bodies that are gone.
+    """
+    contacts, index = state.contacts, state.entity_index
     near = contacts.manifolds[: contacts.recorded]
     points = contacts.points[: 2 * contacts.recorded].reshape(-1, 2)
-    in_use = np.arange(2) < near["count"][:, None]
+    in_use = near["count"][:, None] > _BOTH
     deep = points["separation"] < -events.DEEP * near["size"][:, None]
-    holding = near[(in_use & ((points["normal_impulse"] > 0.0) | deep)).any(axis=1)]
-    return np.isin(state.entity_index.entities, (holding["entity_a"], holding["entity_b"]))
+    holding = np.flatnonzero((in_use & ((points["normal_impulse"] > 0.0) | deep)).any(axis=1))
+    entities = np.concatenate((near["entity_a"][holding], near["entity_b"][holding]))
+    return np.maximum(index.rows_of(entities), 0)

@@ -13,6 +13,7 @@ from physicslab.ecs.config import MIN_TIME, SimulationConfig
 from physicslab.ecs.fields import Field
 from physicslab.kernels.tiers import begin_run
 from physicslab.state.masses import Diverged, quiet
+from physicslab.state.samples import Samples, moving_rows
 from physicslab.state.state import State
 from physicslab.stepping.flow import Flow
 from physicslab.stepping.small import is_small
@@ -23,6 +24,8 @@ _STEPS = Field("steps", "whole", minimum=0, maximum=2**53, owner="run")
 _SECONDS = Field("seconds", "number", minimum=0.0, unit="s", owner="run")
 _STRIDE = Field("stride", "whole", minimum=1, owner="stepping")
 _AT_MOST = Field("at_most", "number", above=0.0, unit="s", owner="run")
+_SAMPLED = 32_768
+"""Samples of bodies that are taken at most before systems look at them."""
 _LOOK_S, _LOOK_STEPS = 0.1, 1000
 """So long [s], and so many steps of smooth motion, a run goes on before the clock is looked at."""
 
@@ -64,6 +67,7 @@ class Stepped(Protocol):
     time: float
     steps: int
     schedule: Schedule
+    samples: Samples | None
 
     @property
     def simulation(self) -> SimulationConfig:
@@ -203,11 +207,26 @@ def _go_on(
     A stepper that goes step by step makes ``at_once`` at most where the run has patience, or where its
     kernels are interpreted. That changes no bit.
     """
+    assert isinstance(world, State)
     world.synchronise()
     h = length.dt if done < length.whole else length.rest
+    wanted = stride() - done % stride()
+    taken = world.samples
     if world.schedule.observer is not None:
         return world.advance(h, 1)
-    wanted = stride() - done % stride()
+    if world.schedule.samplers:
+        wanted = max(1, min(wanted, length.steps - done, _SAMPLED // max(1, len(moving_rows(world)))))
+        world.samples = taken or Samples(world, world.time, h, 1, wanted)
+    try:
+        return _advance(world, length, done, h, wanted, at_once, is_patient)
+    finally:
+        world.samples = taken
+
+
+def _advance(
+    world: Stepped, length: RunLength, done: int, h: float, wanted: int, at_once: int, is_patient: bool
+) -> int:
+    """Advance by at most ``wanted`` steps of ``h`` seconds, as far as one call goes; return how many."""
     best = world.stepper_for(h)
     count = max(1, min(wanted, length.whole - done, world.steps_ahead(h)))
     if not best.leaps:

@@ -52,7 +52,9 @@ class Schedule:
     interpreted : tuple of str
         The names of those that no kernel computes, and Python does.
     observer : System, optional
-        The first of them that looks at every step.
+        The first of them that has to be called at every step.
+    samplers : bool
+        Whether any of them takes every step from samples.
     remade : int
         How often it was made.
     """
@@ -67,6 +69,7 @@ class Schedule:
         self.smooth_forces: tuple[ForceSystem, ...] = ()
         self.interpreted: tuple[str, ...] = ()
         self.observer: System | None = None
+        self.samplers = False
         self.remade = 0
         self._timings: dict[str, Timing] = {}
         self._settle: Callable[[], None] | None = None
@@ -117,7 +120,9 @@ class Schedule:
         joined = [system.smooth for system in running if isinstance(system, JointSystem)]
         self.smooth_forces = (*self.forces, *joined)
         self.interpreted = tuple(force.name for force in self.forces if not type(force).packs())
-        self.observer = next((system for system in running if system.observes()), None)
+        observers = [system for system in running if system.observes()]
+        self.observer = next((system for system in observers if not system.sampled), None)
+        self.samplers = any(system.sampled for system in observers)
         self._calls = {stage: [] for stage in Stage}
         for system in running:
             timing = self._timings.setdefault(system.name, Timing())

@@ -95,11 +95,15 @@ class System:
     engine : bool
         Whether compiled steppers do this very class's work themselves. It is not inherited: a subclass may
         do other work.
+    sampled : bool
+        Whether it only reads the motion, and takes the steps that one call made from ``state.samples``: then
+        a run may make many steps in a call although the system is called at ``FINISH``.
     """
 
     needs: ClassVar[tuple[type[Any], ...]] = ()
     kernels: ClassVar[tuple[Any, ...]] = ()
     engine: ClassVar[bool] = False
+    sampled: ClassVar[bool] = False
 
     @property
     def name(self) -> str:

@@ -27,6 +27,7 @@ class TrailSystem(System):
     """
 
     needs = (Trail, Transform)
+    sampled = True
 
     def __init__(self) -> None:
         self.entities: NDArray[np.int64] = np.zeros(0, np.int64)
@@ -64,18 +65,29 @@ class TrailSystem(System):
 
     @at(Stage.FINISH)
     def record(self, state: State, h: float) -> None:
-        """Note where the bodies are at the end of the step."""
-        now = state.time + h
+        """Note where the bodies are at the end of the step, or of each of the steps that were one call."""
+        now, samples = state.time + h, state.samples
         if now <= self._now:  # the clock was set back: what was recorded is in the future
             self._time[:] = np.nan
-        self._now = now
+            self._now = state.time
         self._length = state.table(Trail)["length"][self._rows]
-        every = np.arange(len(self._rows))
+        places = state.table(Transform)["position"][self._rows]
+        if samples is not None:
+            own, there = np.flatnonzero(np.isin(self._rows, samples.rows)), np.isin(samples.rows, self._rows)
+            passed = places.copy()
+            for number in samples.between(self._now, now):
+                passed[own] = samples.motion[number, there, :2]
+                self._note(float(samples.times[number]), passed)
+        self._note(now, places)
+
+    def _note(self, now: float, places: NDArray[np.float64]) -> None:
+        """Note the ``places`` [m] (n, 2) at a time [s]."""
+        self._now, every = now, np.arange(len(self._rows))
         newest, before = self._time[every, self._head], self._time[every, self._head - 1]
         gap = (1.0 - 1e-9) * self._length / (SAMPLES - 2)
         due = (newest - before >= gap) | (np.isfinite(newest) & np.isnan(before))
         self._head[due] = (self._head[due] + 1) % SAMPLES
-        self._place[every, self._head] = state.table(Transform)["position"][self._rows]
+        self._place[every, self._head] = places
         self._time[every, self._head] = now
 
     def paths(self, every: int = 1) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

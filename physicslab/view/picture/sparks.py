@@ -51,8 +51,9 @@ class Sparks:
         Where they are [m] and how fast they fly [m/s], those of older impacts first.
     age, life, strength : float64 arrays (n,)
         Time they have flown and may fly [s]; how much energy the impact took, 0 to 1.
-    rings : float64 array (k, 3)
-        Where impacts were [m], and when [s].
+    rings : float64 array (k, 5)
+        Where impacts were [m], when [s], from which angle on a ring is drawn and how far around [rad]: all of
+        it between bodies that move, and half of it away from one that is fixed.
     """
 
     def __init__(self) -> None:
@@ -66,7 +67,7 @@ class Sparks:
         """Put them all out."""
         self.place, self.velocity = np.zeros((0, 2)), np.zeros((0, 2))
         self.age, self.life, self.strength = np.zeros(0), np.zeros(0), np.zeros(0)
-        self.rings = np.zeros((0, 3))
+        self.rings = np.zeros((0, 5))
 
     def advance(self, impacts: NDArray[Any], time: float, scale: float) -> None:
         """Let sparks fly on to a time of the world, and add those of new impacts.
@@ -85,7 +86,8 @@ class Sparks:
         elapsed = np.full(len(self), time - self._time)
         self._time = time
         seen = _seen(impacts, scale)
-        self.rings = np.concatenate((self.rings, np.stack((seen["x"], seen["y"], seen["time"]), axis=1)))
+        rings = seen["x"], seen["y"], seen["time"], *_arcs(seen)
+        self.rings = np.concatenate((self.rings, np.stack(rings, axis=1)))
         young = (self.rings[:, 2] <= time) & (time - self.rings[:, 2] < _RING_LIFE)
         self.rings = self.rings[young][-_MAX_RINGS:]
         impact, of_impact, strength = _sources(seen)
@@ -134,12 +136,12 @@ class Sparks:
         age = (self._time - self.rings[:, 2]) / _RING_LIFE
         centre = camera.project(self.rings[:, :2])
         inside = ((centre > -_RING_TO) & (centre < np.array(camera.size) + _RING_TO)).all(axis=1)
-        centre, age = centre[inside], age[inside]
+        centre, age, (begin, around) = centre[inside], age[inside], self.rings[inside, 3:].T
         if not len(centre):
             return
-        turns = np.linspace(0.0, 2.0 * np.pi, _RING_LINES + 1)
+        turns = begin[:, None] + around[:, None] * np.linspace(0.0, 1.0, _RING_LINES + 1)
         radius = _RING_FROM + (_RING_TO - _RING_FROM) * np.sqrt(age)
-        way = np.stack((np.cos(turns), np.sin(turns)), axis=1)
+        way = np.stack((np.cos(turns), -np.sin(turns)), axis=2)
         corners = centre[:, None, :] + radius[:, None, None] * way
         opacity = np.repeat(0.6 * (1.0 - age), _RING_LINES)
         start, end = corners[:, :-1].reshape(-1, 2), corners[:, 1:].reshape(-1, 2)
@@ -150,6 +152,14 @@ def _seen(impacts: NDArray[Any], scale: float) -> NDArray[Any]:
     """Return those of the impacts that are fast enough to be seen, at a scale [px/m]."""
     finite = np.isfinite(impacts["x"]) & np.isfinite(impacts["y"])
     return impacts[finite & (impacts["approach_speed"] * scale > _MIN_APPROACH)]
+
+
+def _arcs(impacts: NDArray[Any]) -> tuple[Numbers, Numbers]:
+    """Return from which angle on the ring of each impact is drawn, and how far around [rad]."""
+    fixed_a, fixed_b = impacts["inverse_mass_a"] == 0.0, impacts["inverse_mass_b"] == 0.0
+    free = np.arctan2(impacts["normal_y"], impacts["normal_x"]) + np.where(fixed_b, np.pi, 0.0)
+    half = np.where(fixed_a == fixed_b, np.pi, 0.5 * np.pi)
+    return free - half, 2.0 * half
 
 
 def _sources(impacts: NDArray[Any]) -> tuple[NDArray[Any], NDArray[np.int64], Numbers]:

@@ -3,7 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Mass, Spring, Transform
+from physicslab.components import Mass, Shape, Spring, Transform
+from physicslab.contacts.outlines import outlines_of
 from physicslab.ecs.vector import rotated
 from physicslab.theme import Theme
 from physicslab.view.canvas.camera import Camera
@@ -18,7 +19,9 @@ _MIN_TURNS, _MAX_TURNS = 4, 16
 _AROUND = 14
 """Into how many lines a turn is divided."""
 _LEAD = 0.1
-"""Share of a spring that is straight, at each end."""
+"""Share of a spring that is straight, at each end; where it lies over a body, up to that body's rim."""
+_COILED = 0.2
+"""Share of a spring that is a coil at least."""
 _RADIUS, _THICKEST = 7.0, 14.0
 """Radius of a coil at rest, and of one that is pressed together at most [px]."""
 _DEPTH = 0.3
@@ -56,14 +59,26 @@ def draw_springs(world: World, camera: Camera, theme: Theme, canvas: Canvas) -> 
     pen.brackets(end[fixed], 1.0)
     pen.lines(start[plain], end[plain], theme.spring, 1.6)
     if not plain.all():
-        _draw_coils(pen, start[~plain], end[~plain], rest[~plain])
+        held = np.stack((np.where(a == 0, own, a), b), axis=1)[seen][~plain]
+        covered = _half_sizes(world, held) * camera.scale
+        _draw_coils(pen, start[~plain], end[~plain], rest[~plain], covered)
+        pen.discs(np.concatenate((start[~plain], end[~plain & ~fixed])), 2.6, theme.spring)
     pen.screws(end[fixed], np.full(int(fixed.sum()), 0.7))
     pen.draw(canvas)
 
 
-def _draw_coils(pen: Pen, start: Points, end: Points, rest: Numbers) -> None:
+def _half_sizes(world: World, entities: NDArray[np.int64]) -> Numbers:
+    """Return half of the smaller extent of each body [m], 0 for what has no shape."""
+    rows = world.entity_index.lookup[entities]
+    half = np.zeros(rows.shape)
+    shaped = world.table(Shape).present[rows] & (entities != 0)
+    half[shaped] = 0.5 * outlines_of(world, rows[shaped]).size
+    return half
+
+
+def _draw_coils(pen: Pen, start: Points, end: Points, rest: Numbers, covered: Numbers) -> None:
     """Add coils: their backs first, then the straight ends and the fronts, which are brighter."""
-    path, is_front = coil(start, end, rest, pen.unit)
+    path, is_front = coil(start, end, rest, pen.unit, covered)
     length, colour = np.hypot(*(end - start).T), pen.theme.spring
     with np.errstate(over="ignore"):
         wire = _WIRE * np.clip(np.sqrt(np.maximum(rest, _MIN_COIL) / length), 0.6, 1.25)
@@ -71,7 +86,6 @@ def _draw_coils(pen: Pen, start: Points, end: Points, rest: Numbers) -> None:
         chosen = is_front == front
         lines = path[:, :-1][:, chosen].reshape(-1, 2), path[:, 1:][:, chosen].reshape(-1, 2)
         pen.lines(*lines, shade, np.repeat(wire, int(chosen.sum())))
-    pen.discs(start, 2.6, colour)
 
 
 def ends_of(world: World) -> tuple[Points, Points]:
@@ -94,34 +108,40 @@ def _looks_rigid(
     return rigid
 
 
-def coil(start: Points, end: Points, rest: Numbers, unit: float = 1.0) -> tuple[Points, NDArray[np.bool_]]:
+def coil(
+    start: Points, end: Points, rest: Numbers, unit: float = 1.0, covered: Numbers | float = 0.0
+) -> tuple[Points, NDArray[np.bool_]]:
     """Return the corners (n, k, 2) of coils between ends (n, 2), and which lines (k - 1,) are in front.
 
     The springs are of rest lengths (n,) [px], and ``unit`` is the size of a pixel of the usual picture. The
-    wire keeps its length: a spring that is stretched grows slender, one that is pressed together wide.
+    wire keeps its length: a spring that is stretched grows slender, one that is pressed together wide. It is
+    straight as far as bodies lie under it: ``covered`` (n, 2) [px].
     """
     along = end - start
     length = np.maximum(np.hypot(along[:, 0], along[:, 1]), 1e-9)
     ahead = along / length[:, None]
     across = np.stack((-ahead[:, 1], ahead[:, 0]), axis=1)
-    # All have as many turns, so that they are one array.
-    turns = round(float(np.clip(np.median(rest) / (_TURN * unit), _MIN_TURNS, _MAX_TURNS)))
-    part = (1.0 - 2.0 * _LEAD) / turns
     natural = np.maximum(rest, _MIN_COIL)
+    lead = np.full(2, _LEAD)
+    straight = np.maximum(covered, np.outer(length, lead))
+    straight *= np.minimum(1.0, (1.0 - _COILED) * length / straight.sum(axis=1))[:, None]
+    begin, coiled = straight[:, :1], (length - straight.sum(axis=1))
     with np.errstate(over="ignore"):
-        wire = np.hypot(part * natural, 2.0 * np.pi * np.minimum(_RADIUS * unit, 0.1 * natural))
-        radius = np.sqrt(np.maximum(wire * wire - (part * length) ** 2, 0.0)) / (2.0 * np.pi)
+        hidden = np.maximum(covered, np.outer(natural, lead)).sum(axis=1)
+        natural = np.maximum(natural - hidden, _COILED * natural)
+        # All have as many turns, so that they are one array.
+        wound = float(np.median(natural)) / (1.0 - 2.0 * _LEAD)
+        turns = round(float(np.clip(wound / (_TURN * unit), _MIN_TURNS, _MAX_TURNS)))
+        wire = np.hypot(natural / turns, 2.0 * np.pi * np.minimum(_RADIUS * unit, 0.125 * natural))
+        radius = np.sqrt(np.maximum(wire * wire - (coiled / turns) ** 2, 0.0)) / (2.0 * np.pi)
     radius = np.clip(radius, 0.8 * unit, _THICKEST * unit)[:, None]
     turn = np.arange(turns * _AROUND + 1) * (2.0 * np.pi / _AROUND)
-    share = _LEAD + part * turn / (2.0 * np.pi)
+    share = turn / (2.0 * np.pi * turns)
     depth = _DEPTH * radius * (1.0 - np.cos(turn))
     # The back of each turn lies a little farther along, as of a coil that is seen from above its end.
-    forward = np.concatenate(
-        (np.zeros((len(start), 1)), share * length[:, None] + depth, length[:, None]), axis=1
-    )
-    side = np.concatenate(
-        (np.zeros((len(start), 1)), radius * np.sin(turn), np.zeros((len(start), 1))), axis=1
-    )
+    nothing = np.zeros((len(start), 1))
+    forward = np.concatenate((nothing, begin + share * coiled[:, None] + depth, length[:, None]), axis=1)
+    side = np.concatenate((nothing, radius * np.sin(turn), nothing), axis=1)
     path: Points = (
         start[:, None, :] + forward[:, :, None] * ahead[:, None, :] + side[:, :, None] * across[:, None, :]
     )

@@ -35,12 +35,15 @@ class Framing:
         Returns which part of the canvas is left for the world [px].
     small : callable
         Returns where meters and sliders lie in it [px].
+    above : callable
+        Returns how high a banner is that stands at the top of it as long as a world is shown [px].
     """
 
     def __init__(self, canvas: Canvas, camera: Camera, scale: float) -> None:
         self._canvas, self._camera, self._scale = canvas, camera, scale
         self.room: Callable[[], Rect] = lambda: (0, 0, *canvas.size)
         self.small: Callable[[], Sequence[Rect]] = lambda: ()
+        self.above: Callable[[World], int] = lambda _: 0
         self._shown: tuple[Vector2, float, float, Extent | None] | None = None
         self._room: Rect | None = None
         self._count = 0  # of meters and sliders; where one grows by a digit the view stays
@@ -77,8 +80,8 @@ class Framing:
         """Let the world open with what is seen of it now; a view that was not touched stays as it is."""
         if self._shown is not None and self._shown[:2] == (self._camera.centre, self._camera.scale):
             return
-        _, _, width, height = self.room()
-        middle = self._camera.to_world(self.middle)
+        left, top, width, height = self._below_banner(world)
+        middle = self._camera.to_world((left + 0.5 * width, top + 0.5 * height))
         share = (0.5 - _AROUND) / self._camera.scale  # what is left around it is not part of it
         world.view = (
             middle.x - share * width, middle.y - share * height,
@@ -90,7 +93,7 @@ class Framing:
         self._show(world, float("inf"))
 
     def _show(self, world: World, largest_scale: float, view: Extent | None = None) -> None:
-        extent, room = view or extent_of(world), self.room()
+        extent, room = view or extent_of(world), self._below_banner(world)
         if extent is None:
             self._camera.look_at((0.0, 0.0, 0.0, 0.0), self._scale, room)
         else:
@@ -101,6 +104,11 @@ class Framing:
                 if self._look(world, extent, largest, largest_scale) < _LEAST * scale:
                     self._look(world, extent, room, largest_scale)
         self._shown = (self._camera.centre, self._camera.scale, largest_scale, view)
+
+    def _below_banner(self, world: World) -> Rect:
+        left, top, width, height = self.room()
+        taken = min(self.above(world), height - 1)
+        return left, top + taken, width, height - taken
 
     def _look(self, world: World, extent: Extent, room: Rect, largest_scale: float) -> float:
         """Show a part of the world in a part of the canvas, and return the scale [px/m]."""

@@ -6,7 +6,7 @@ from itertools import product
 
 from physicslab.diagnostics.warnings import ModelWarning, find_warnings
 from physicslab.theme import Colour, mixed
-from physicslab.view.canvas.canvas import Rect, overlap
+from physicslab.view.canvas.canvas import Rect, TextStyle, overlap
 from physicslab.view.controls.actions import has_gravity
 from physicslab.view.controls.share_actions import finish_sharing
 from physicslab.view.controls.tour import follow_tour
@@ -24,8 +24,14 @@ _STRIP, _LEAST = 6, (14.0, 6.5)
 rule, and where there is no such strip; in heights of the text."""
 _ROUGHLY = 5.0
 """How finely [s] it is said how long compiling takes: it is estimated."""
+_MARGIN = 0.6
+"""Distance of what is drawn over the world from its edges and from each other, in heights of the text."""
 _MESSAGE_WIDTH = 0.7
 """How wide a message beside the scale bar may be, as a share of what is left for the world."""
+
+
+def _is_planet_mode(world: World) -> bool:
+    return world.physics.gravity_mode == "planet" and has_gravity(world)
 
 
 class Hud:
@@ -115,7 +121,7 @@ class Hud:
         if window.pace.speed != 1.0:
             name = "SLOW MOTION" if window.pace.speed < 1.0 else "FAST MOTION"
             found.append((f"{name} {window.pace.speed:g}x", theme.slow))
-        if world.physics.gravity_mode == "planet" and has_gravity(world):
+        if _is_planet_mode(world):
             found.append(("PLANET MODE", theme.planet))
         dropped = self._dropped.recent(window.pace.dropped, window.now)
         if self._prepared and window.preparing is None:
@@ -130,6 +136,13 @@ class Hud:
         elif dropped and not window.pace.paused:
             found.append((f"The computer is too slow: {dropped:.1f} s were skipped", theme.slow))
         return found
+
+    def above(self, world: World) -> int:
+        """Return the height at the top of the room that a banner takes as long as a world is shown [px]."""
+        on = self._window.drawing
+        style = TextStyle(on.size + 2, on.theme.planet, bold=True)
+        margin = round(_MARGIN * on.size)
+        return banners.pill_height(1, style, on.canvas) + margin if _is_planet_mode(world) else 0
 
     def _draw_advice(self, world: World, room: Rect) -> Rect | None:
         """Write what is not to be trusted, and put a ring around each body that is spoken of."""
@@ -147,14 +160,15 @@ class Hud:
         """
         window, on, room = self._window, self._window.drawing, self._interface.visible
         (left, top, width, height), size = room, on.size
-        margin = round(0.6 * size)
+        margin = round(_MARGIN * size)
         bar = draw_scale_bar(on, left + width, top + height - margin)
         numbers, written = draw_axis_numbers(on, room, bar[0], self._windows) if window.grid else (0, [])
         taken = [bar, *self._draw_messages(world, bar, numbers)]
         bottom = min(rect[1] for rect in taken) - margin
         begin, wide, edge = self._free_strip(at_top=True)
         begin, across, first = begin + margin, wide - 2 * margin, edge + margin
-        shown = banners.draw_banners(self._banners(world), (begin, first, across, bottom - first), on)
+        strip = begin, first, across, bottom - first
+        shown = banners.draw_banners(self._banners(world), strip, self._windows, on)
         below = shown[-1][1] + shown[-1][3] + margin if shown else first
         advice = self._draw_advice(world, (begin, below, across, bottom - below))
         taken += [*shown, *([] if advice is None else [advice])]

@@ -28,7 +28,7 @@ from physicslab.world import World
 
 _FLAGS = imgui.WindowFlags_.no_collapse | imgui.WindowFlags_.no_focus_on_appearing
 _LEAST_PLOT = 8.5
-"""Height of a plot at least, in heights of the text: what is below the rest can be scrolled to."""
+"""Height of a plot, in heights of the text, below which it takes all the room and readings stand below."""
 _ROOMY, _PER_LINE = (15.0, 10.0), 1.4
 """Width and height of a graph, and height for each line, with which its readings stand above the plot [text
 heights]; in less room the plot comes first, and the readings below it can be scrolled to."""
@@ -82,7 +82,9 @@ class GraphPanels:
             free, words = imgui.get_content_region_avail(), 0.0
             if not is_roomy:
                 words = (len(graph.lines) + 1) * imgui.get_text_line_height_with_spacing()
-            height = max(free.y - words, min(_LEAST_PLOT * ui.size, free.y))
+            height = free.y - words
+            if height < _LEAST_PLOT * ui.size:
+                height = free.y + imgui.get_style().window_padding.y  # no line below is seen in half
             hovered = self._plots[entity].build(ui, world, window, graph, height)
             if not is_roomy:
                 graph_readings.build_moment(ui, world, window)

@@ -80,7 +80,7 @@ def _frame(ui: Ui) -> None:
     """Draw the outline of the badge around what was built last."""
     low, high, inset = imgui.get_item_rect_min(), imgui.get_item_rect_max(), _INSET * ui.size
     imgui.get_window_draw_list().add_rect(
-        ImVec2(low.x - inset, low.y + 2.0), ImVec2(high.x + inset, high.y - 2.0), packed(ui.theme.outline),
+        ImVec2(low.x - inset, low.y), ImVec2(high.x + inset, high.y), packed(ui.theme.outline),
         0.5 * (high.y - low.y),
     )  # fmt: skip
 
