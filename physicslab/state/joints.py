@@ -73,7 +73,7 @@ class Joints:
         Room for what is computed of the ends, nodes and entries of blocks
         (:mod:`physicslab.kernels.joints.blocks`).
     plain : tuple
-        What kernels take of all this.
+        The arguments of kernels that work on rows.
     beside_contacts : bool
         Whether contacts are solved at all, and joints with them.
     dependent : bool array (n,)
