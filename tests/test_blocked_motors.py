@@ -85,3 +85,19 @@ def test_the_angle_of_what_cannot_turn_is_not_held_twice() -> None:
     world = made([point, {"Slot": {"b": "point", "axis": [0.0, 1.0]}}], "auto")
     world.run(steps=2)
     assert not list(find_warnings(world))
+
+
+@pytest.mark.parametrize("limit", [None, 0.5])
+def test_a_motor_of_any_strength_is_stopped_by_a_wall(limit: float | None) -> None:
+    """And by the stop of its own slot: it was let give again what each of 4,016 rounds of impacts took."""
+    ball = {"Transform": {}, "Velocity": {}, "Mass": {}, "Shape": {"kind": "circle", "radius": 0.2}}
+    wall = {"Transform": {"position": [1.2, 0.0]}, "Shape": {"kind": "box", "width": 1.0, "height": 1.0}}
+    slot = {"Slot": {"b": "ball", "motor_speed": 1.0, "upper": limit}}
+    walls = [wall] if limit is None else []
+    world = made([{"id": "ball", **ball}, *({"id": "wall", **one} for one in walls), slot], "auto")
+    audit = Audit(world)
+    world.run(seconds=1.0)
+    audit.sample(world)
+    assert world.component(world.entity("ball"), Transform).position.x == pytest.approx(0.5, abs=1e-3)
+    assert world.collisions < 10
+    assert abs(audit.account.energy["motors"]) < 15.0

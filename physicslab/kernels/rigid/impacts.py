@@ -24,7 +24,7 @@ from physicslab.kernels.rigid.budget import book_row
 from physicslab.kernels.rigid.complementarity import NOT_FOUND, solve_complementarity
 from physicslab.kernels.rigid.constraints import apply, assemble, measure_all
 from physicslab.kernels.rigid.equations import FREE, SLIDES_ON, STICKS, UNKNOWN, Equations
-from physicslab.kernels.rigid.features import RigidScene
+from physicslab.kernels.rigid.features import RigidScene, rate_along
 from physicslab.kernels.rigid.joined import book_impulses
 from physicslab.kernels.solver import impact_log
 from physicslab.kernels.solver.impact_log import ImpactPoints, Pair, Pose
@@ -292,6 +292,20 @@ def _note_round(
     return written
 
 
+@inlined
+def _is_driven_on(
+    scene: RigidScene, impact: Equations, n: int, old: Numbers, v: Numbers, rest: float, rate: float
+) -> bool:
+    """Whether a point still approaches half as fast as before, as a motor of any strength drives it."""
+    for i in range(n):
+        room = max(impact.measures[i, F.GAP], 0.0) * rate
+        before = rate_along(scene.rows, impact.points, impact.measures, i, F.NORMAL, old) + room
+        after = rate_along(scene.rows, impact.points, impact.measures, i, F.NORMAL, v) + room
+        if before < -rest and after < 0.5 * before:
+            return True
+    return False
+
+
 @always_inlined
 def resolve_simultaneous_impacts(
     scene: RigidScene, equations: Equations, count: int, impact: Equations, q: Numbers, v: Numbers,
@@ -323,6 +337,10 @@ def resolve_simultaneous_impacts(
             old[i] = v[i]
         apply(scene, impact, n, v)
         if scene.joints[ROWS] > 0:
+            if _is_driven_on(scene, impact, n, old, v, rest, rate):
+                for i in range(len(v)):
+                    v[i] = old[i]
+                return impacts, False, energetic, lowered, last, turn
             book_impulses(scene, impact.points, impact.measures, impact.vectors[UNKNOWN], n, q, v, account)
         impacts += _note_round(
             scene, impact, n, q, old, v, rest, rate, acceleration, law, entities, log, logged + impacts, time,
