@@ -95,6 +95,7 @@ class Hud:
 
     def _read_figures(self, world: World, elapsed: float) -> None:
         self._figures = figures.WorldFigures(world, self._watch, self._meter.frame_rate)
+        self._window.scales = self._figures.scales
         self._measures = (
             figures.measure_lines(world, self._figures) if self._window.level != "Explore" else []
         )
