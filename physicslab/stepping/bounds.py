@@ -13,11 +13,12 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Shape, Transform, Velocity
+from physicslab.components import Transform, Velocity
 from physicslab.contacts.islands import wake_neighbours
 from physicslab.contacts.outlines import Numbers, Outlines, exits, outlines_of, overlap, overlapping
 from physicslab.kernels.accounts import OVERLAP
 from physicslab.kernels.solver.separate import BEYOND, DEEP, ROUNDING
+from physicslab.state.solid import is_any_apart, may_touch, solid_rows
 from physicslab.state.state import State
 from physicslab.stepping.accounting import balance_of
 from physicslab.systems.schedule import Schedule
@@ -51,24 +52,45 @@ def return_inside(state: State, schedule: Schedule) -> int:
         The forces, whose energy this changes.
     """
     state.contacts.outside = 0
-    bounds = state.physics.bounds
-    rooms = (-math.inf, -math.inf, math.inf, math.inf) if bounds is None else bounds
-    low, high = np.array(rooms[:2]), np.array(rooms[2:])
-    rows = state.batch(Transform, Shape).rows
-    inverse_mass, moves = state.bodies.inverse_mass[rows], state.table(Velocity).present[rows]
-    movable, shapes = rows[inverse_mass > 0.0], outlines_of(state, rows[~moves])
+    solid, velocity = solid_rows(state), state.table(Velocity)
+    fixed, movable = solid[~velocity.present[solid]], solid[state.bodies.inverse_mass[solid] > 0.0]
+    if not len(fixed):
+        return 0
+    low, high = _room(state)
+    shapes = outlines_of(state, fixed)
+    movable = movable[_may_be_kept(state, movable, shapes, low, high)]
     bodies = outlines_of(state, movable)
     beyond = _beyond(bodies, low, high) > BEYOND * bodies.size[:, None]
     places: dict[int, Numbers] = {}
-    for n in np.flatnonzero(beyond.any(axis=1) | _may_be_within(bodies, shapes)):
-        if _is_kept(bodies, int(n), shapes, _INWARDS[beyond[n]]):
-            place = _free_place(bodies, int(n), shapes, low, high)
+    for n in np.flatnonzero(beyond.any(axis=1) | _may_be_within(bodies, shapes)).tolist():
+        met = shapes
+        if is_any_apart(state):
+            met = outlines_of(state, fixed[may_touch(state, np.full(len(fixed), movable[n]), fixed)])
+        if _is_kept(bodies, n, met, _INWARDS[beyond[n]]):
+            place = _free_place(bodies, n, met, low, high)
             if place is not None:
-                places[int(n)] = place
+                places[n] = place
     if places:
         numbers = np.array(list(places))
         _put(state, schedule, movable[numbers], np.array(list(places.values())), beyond[numbers])
     return len(places)
+
+
+def _room(state: State) -> tuple[Numbers, Numbers]:
+    """Return the lowest and the highest x and y within the bounds (2,) [m]."""
+    bounds = state.physics.bounds or (-math.inf, -math.inf, math.inf, math.inf)
+    return np.array(bounds[:2]), np.array(bounds[2:])
+
+
+def _may_be_kept(
+    state: State, rows: NDArray[np.int64], fixed: Outlines, low: Numbers, high: Numbers
+) -> NDArray[np.bool_]:
+    """Return which bodies (n,) may be beyond the bounds or in a fixed one, by the circles around them."""
+    place, reach = state.table(Transform)["position"][rows], state.bodies.shapes.reach[rows][:, None]
+    found: NDArray[np.bool_] = ((place - reach < low) | (place + reach > high)).any(axis=1)
+    for middle, far in zip(fixed.place, fixed.reach, strict=True):
+        found |= (np.abs(place - middle) < reach + far).all(axis=1)
+    return found
 
 
 def _beyond(bodies: Outlines, low: Numbers, high: Numbers) -> Numbers:
