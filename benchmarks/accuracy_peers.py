@@ -1,9 +1,10 @@
 """Time PhysicsLab beside REBOUND and SciPy at the same final error, interleaved in one run.
 
-``uv run --group peers python benchmarks/accuracy_peers.py [--repeats N] [--error E]`` gives every method the
-loosest setting of a ladder at which its final error is within ``E``, and then times all of them in turn.
-It prints the median process time of each, the median of its ratios to PhysicsLab's ``auto`` method with the
-tolerance found (above 1, PhysicsLab is faster), and what a force evaluation of two bodies costs.
+``uv run --group peers python benchmarks/accuracy_peers.py [PROBLEM ...] [--repeats N] [--error E]`` gives
+every method the loosest setting of a ladder at which its final error is within ``E``, and then times all of
+them in turn. It prints the median process time of each, the median of its ratios to PhysicsLab's ``auto``
+method with the tolerance found (above 1, PhysicsLab is faster), force evaluations where they are counted, and
+what one of two bodies costs. SciPy solves links on pins in angles, by equations without joints.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ import time
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import rebound
@@ -23,12 +25,21 @@ from scipy.integrate import solve_ivp
 from physicslab.components import Mass, Transform, Velocity
 from physicslab.lab.accuracy.catalogue import PROBLEMS
 from physicslab.lab.accuracy.problem import Problem, Setting
+from physicslab.lab.worlds import GRAVITY
 from physicslab.world import World
 
-COMPARED = ("kepler_e0.5", "kepler_e0.9", "figure_eight")
+COMPARED = ("kepler_e0.5", "kepler_e0.9", "figure_eight", "double_pendulum", "double_bars", "ten_links")
+LINKS = {"double_pendulum": (2, 1.0, False), "double_bars": (2, 1.0, True), "ten_links": (10, 0.5, True)}
+"""Chains of links of 1 m and 1 kg: how many, their angle from below at first [rad], whether they are bars."""
 
-type Run = Callable[[Problem, float], tuple[float, float]]
-"""Computes a problem with a step or tolerance; returns process seconds and the error."""
+type Run = Callable[[Problem, float], tuple[float, float, int]]
+"""Computes a problem with a step or tolerance; returns process seconds, the error, and force evaluations."""
+
+
+type Law = Callable[[float, np.ndarray], np.ndarray]
+"""Returns the rates of a state at a time, as SciPy reads them."""
+type Put = Callable[[np.ndarray], None]
+"""Puts bodies of a world where a state has them, so that the problem can compare."""
 
 
 @dataclass(frozen=True)
@@ -38,12 +49,14 @@ class Method:
     name: str
     run: Run
     ladder: tuple[float, ...]
+    joins: bool = False
+    """Whether it can compute links on pins."""
 
 
 def ours(integrator: str) -> Run:
     """Return how PhysicsLab computes a problem: by tolerance, or by the number of steps."""
 
-    def run(problem: Problem, fineness: float) -> tuple[float, float]:
+    def run(problem: Problem, fineness: float) -> tuple[float, float, int]:
         setting = (
             Setting(integrator, tolerance=fineness)
             if fineness < 1.0
@@ -53,7 +66,7 @@ def ours(integrator: str) -> Run:
         world.synchronise()
         start = time.process_time()
         error = problem.finish((world,))
-        return time.process_time() - start, error
+        return time.process_time() - start, error, world.force_evaluations
 
     return run
 
@@ -83,7 +96,7 @@ def fixed_star(problem: Problem) -> bool:
 def rebounds(integrator: str) -> Run:
     """Return how REBOUND computes a problem."""
 
-    def run(problem: Problem, fineness: float) -> tuple[float, float]:
+    def run(problem: Problem, fineness: float) -> tuple[float, float, int]:
         world = problem.build(Setting("auto").simulation(problem))
         world.synchronise()
         entities, masses, places, speeds = state(world)
@@ -104,7 +117,7 @@ def rebounds(integrator: str) -> Run:
             spent += time.process_time() - start
             put(world, entities, np.array([(body.x, body.y) for body in simulation.particles]))
             error = max(error, problem.error(world, i))
-        return spent, error
+        return spent, error, 0
 
     return run
 
@@ -117,10 +130,8 @@ def set_tolerance(simulation: rebound.Simulation, tolerance: float) -> None:
         simulation.integrator.epsilon = tolerance
 
 
-def scipys(problem: Problem, tolerance: float) -> tuple[float, float]:
-    """Compute a problem with SciPy's DOP853 and forces in numpy, as one would write them."""
-    world = problem.build(Setting("auto").simulation(problem))
-    world.synchronise()
+def attracted(world: World) -> tuple[Law, np.ndarray, Put]:
+    """Return the law of bodies that attract each other, with forces in numpy as one would write them."""
     entities, masses, places, speeds = state(world)
     n = len(masses)
     moves = np.array([world.has(entity, Velocity) for entity in entities], float)[:, None]
@@ -133,15 +144,52 @@ def scipys(problem: Problem, tolerance: float) -> tuple[float, float]:
         pull = np.where(others, masses / np.where(others, r2 * np.sqrt(r2), 1.0), 0.0)
         return np.concatenate((y[2 * n :], (moves * (pull[:, :, None] * gap).sum(1)).ravel()))
 
-    y = np.concatenate((places.ravel(), speeds.ravel()))
-    spent, error, t0 = 0.0, 0.0, 0.0
+    start = np.concatenate((places.ravel(), speeds.ravel()))
+    return rates, start, lambda y: put(world, entities, y[: 2 * n].reshape(n, 2))
+
+
+def linked(world: World, links: int, angle: float, bars: bool) -> tuple[Law, np.ndarray, Put]:
+    """Return the law of a chain of links by their angles q from below, in numpy.
+
+    Lagrange's equations: sum_j c_ij (cos(q_i - q_j) q_j'' + sin(q_i - q_j) q_j'^2) + w_i g sin q_i = 0.
+    """
+    below, share = np.arange(links - 1.0, -1.0, -1.0), 0.5 if bars else 1.0
+    weights = GRAVITY * (share + below)
+    coupled = share + np.minimum.outer(below, below)
+    np.fill_diagonal(coupled, (1.0 / 3.0 if bars else 1.0) + below)
+
+    def rates(_t: float, y: np.ndarray) -> np.ndarray:
+        q, v = y[:links], y[links:]
+        apart = q[:, None] - q
+        pulls = -weights * np.sin(q) - (coupled * np.sin(apart)) @ (v * v)
+        return np.concatenate((v, np.linalg.solve(coupled * np.cos(apart), pulls)))
+
+    def put_end(y: np.ndarray) -> None:
+        (s, c), v, end = (np.sin(y[:links]), np.cos(y[:links])), y[links:], world.entity("end")
+        ways = np.ones(links)
+        ways[-1] = share  # to the middle of the last bar, or to the mass at its end
+        transform, velocity = world.component(end, Transform), world.component(end, Velocity)
+        transform.position, transform.angle = (float(ways @ s), float(-ways @ c)), float(y[links - 1])
+        velocity.linear, velocity.angular = (float(ways @ (v * c)), float(ways @ (v * s))), float(v[-1])
+
+    return rates, np.concatenate((np.full(links, angle), np.zeros(links))), put_end
+
+
+def scipys(problem: Problem, tolerance: float) -> tuple[float, float, int]:
+    """Compute a problem with SciPy's DOP853."""
+    world = problem.build(Setting("auto").simulation(problem))
+    world.synchronise()
+    chain = LINKS.get(problem.name)
+    rates, y, put_back = attracted(world) if chain is None else linked(world, *chain)
+    spent, error, t0, evaluations = 0.0, 0.0, 0.0, 0
     for i, t in enumerate(problem.times):
         start = time.process_time()
-        y = solve_ivp(rates, (t0, t), y, "DOP853", rtol=max(tolerance, 2.3e-14), atol=tolerance).y[:, -1]
+        found = solve_ivp(rates, (t0, t), y, "DOP853", rtol=max(tolerance, 2.3e-14), atol=tolerance)
         spent += time.process_time() - start
-        put(world, entities, y[: 2 * n].reshape(n, 2))
+        y, evaluations = found.y[:, -1], evaluations + found.nfev
+        put_back(y)
         error, t0 = max(error, problem.error(world, i)), t
-    return spent, error
+    return spent, error, evaluations
 
 
 def tolerances(first: int, last: int) -> tuple[float, ...]:
@@ -150,12 +198,12 @@ def tolerances(first: int, last: int) -> tuple[float, ...]:
 
 
 METHODS = (
-    Method("PhysicsLab dop853", ours("dop853"), tolerances(-8, -17)),
+    Method("PhysicsLab dop853", ours("dop853"), tolerances(-2, -17), joins=True),
     Method("PhysicsLab blanes_moan", ours("blanes_moan"), tuple(2.0 ** (8 + i / 2) for i in range(24))),
     Method("PhysicsLab leapfrog", ours("leapfrog"), tuple(2.0 ** (14 + i) for i in range(9))),
     Method("REBOUND ias15", rebounds("ias15"), tolerances(-1, -12)),
     Method("REBOUND leapfrog", rebounds("leapfrog"), tuple(2.0 ** (14 + i) for i in range(9))),
-    Method("SciPy DOP853", scipys, tolerances(-8, -13)),
+    Method("SciPy DOP853", scipys, tolerances(-2, -13), joins=True),
 )
 
 
@@ -163,7 +211,7 @@ def enough(method: Method, problem: Problem, error: float) -> tuple[float | None
     """Return the loosest setting at which a method ends within an error, or ``None``; and its best error."""
     best = math.inf
     for fineness in method.ladder:
-        _, found = method.run(problem, fineness)
+        _, found, _ = method.run(problem, fineness)
         best = min(best, found)
         if found <= error:
             return fineness, best
@@ -172,13 +220,14 @@ def enough(method: Method, problem: Problem, error: float) -> tuple[float | None
 
 def compare(problem: Problem, error: float, repeats: int) -> None:
     """Print a table of the methods on one problem."""
-    settings = {method: enough(method, problem, error) for method in METHODS}
-    times: dict[Method, list[float]] = {method: [] for method in METHODS}
-    errors: dict[Method, float] = {}
+    methods = [method for method in METHODS if problem.name not in LINKS or method.joins]
+    settings = {method: enough(method, problem, error) for method in methods}
+    times: dict[Method, list[float]] = {method: [] for method in methods}
+    ends: dict[Method, list[Any]] = {}
     for _ in range(repeats):
         for method, (fineness, _) in settings.items():
             if fineness is not None:
-                spent, errors[method] = method.run(problem, fineness)
+                spent, *ends[method] = method.run(problem, fineness)
                 times[method].append(spent)
     print(f"{problem.name}: {problem.seconds:.6g} s, final error up to {error:g}")
     first = METHODS[0]
@@ -187,9 +236,11 @@ def compare(problem: Problem, error: float, repeats: int) -> None:
             print(f"  {method.name:<24} not reached: {settings[method][1]:.1e} at best")
             continue
         ratio = statistics.median(b / a for a, b in zip(times[first], spent_all, strict=True))
+        found, evaluations = ends[method]
         print(
             f"  {method.name:<24} {1e3 * statistics.median(spent_all):9.2f} ms  {ratio:8.2f} x"
-            f"  error {errors[method]:.1e}  at {settings[method][0]:.3g}"
+            f"  error {found:.1e}  at {settings[method][0]:.3g}"
+            + (f"  {evaluations:,} evaluations" if evaluations else "")
         )
 
 
@@ -214,13 +265,14 @@ def cost_of_a_force() -> None:
 def main() -> None:
     """Compare the methods on every problem."""
     parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("problems", nargs="*", metavar="PROBLEM", default=COMPARED)
     parser.add_argument("--repeats", type=int, default=9)
     parser.add_argument("--error", type=float, default=1e-8)
     arguments = parser.parse_args()
     # REBOUND's own, where a ladder begins with steps that are too long for it.
     warnings.filterwarnings("ignore", message="At least 10 predictor corrector loops")
     cost_of_a_force()
-    for name in COMPARED:
+    for name in arguments.problems:
         compare(PROBLEMS[name], arguments.error, arguments.repeats)
 
 

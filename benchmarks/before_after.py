@@ -94,7 +94,8 @@ def written_for(folder: Path, path: Path) -> Path:
     scene = json.loads(path.read_text("utf-8"))
     (config,) = (folder / "physicslab").rglob("config.py")
     settings = config.read_text("utf-8")
-    scene["simulation"] = {key: value for key, value in scene["simulation"].items() if f" {key}:" in settings}
+    for part in ("simulation", "physics"):
+        scene[part] = {key: value for key, value in scene[part].items() if f" {key}:" in settings}
     found = path.with_name(f"{path.stem}_{abs(hash(folder))}.json")
     found.write_text(json.dumps(scene), "utf-8")
     return found

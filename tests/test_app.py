@@ -26,6 +26,7 @@ from physicslab.kernels import warm
 from physicslab.prefabs import box, circle
 from physicslab.systems.system import Stage, System, at
 from physicslab.theme import DARK, Theme
+from physicslab.view.canvas import display
 from physicslab.view.canvas.canvas import Canvas
 from physicslab.view.canvas.display import Display
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
@@ -202,6 +203,19 @@ def test_the_window_opens_on_the_playground_and_escape_closes_it(each_frame: Eac
     assert len(pressed) == 2  # the first puts the cards of the first minute away
     assert captions[0] == "PhysicsLab" and captions[-1] == "Sandbox - PhysicsLab"
     assert not pygame.display.get_init()
+
+
+@pytest.mark.parametrize(
+    ("screen", "size"), [((800, 600), (800, 600)), ((1366, 768), (1280, 720)), ((320, 1200), (640, 720))]
+)
+def test_the_window_is_no_larger_than_the_screen(
+    screen: tuple[int, int], size: tuple[int, int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its edges, with menus and panels, were beyond those of a small one."""
+    monkeypatch.setattr(display, "_INVISIBLE", ())
+    monkeypatch.setattr(pygame.display, "get_desktop_sizes", lambda: [screen])
+    with Display.open(WindowConfig(), "small") as opened:
+        assert opened.canvas.size == size
 
 
 def test_f12_keeps_a_screenshot(

@@ -60,17 +60,24 @@ def test_a_motor_gives_way_to_what_joints_hold(name: str, contacts: str) -> None
     assert abs(audit.account.energy["motors"]) < 1e-9
 
 
+GEARED = [
+    A, B, {"id": "one", "Pin": {"b": "a", "anchor_a": [0.0, 0.0], "motor_speed": 3.0}},
+    {"id": "two", "Pin": {"b": "b", "anchor_a": [1.2, 0.0], "motor_speed": 3.0}},
+    {"id": "gear", "Gear": {"first": "one", "second": "two", "ratio": -2.0}},
+]  # fmt: skip
+
+
 @pytest.mark.parametrize("contacts", ["auto", "soft"])
-def test_a_motor_that_does_nothing_is_told(contacts: str) -> None:
-    geared = [
-        A, B, {"id": "one", "Pin": {"b": "a", "anchor_a": [0.0, 0.0], "motor_speed": 3.0}},
-        {"id": "two", "Pin": {"b": "b", "anchor_a": [1.2, 0.0], "motor_speed": 3.0}},
-        {"id": "gear", "Gear": {"first": "one", "second": "two", "ratio": -2.0}},
-    ]  # fmt: skip
-    world = made([*geared, *[BYSTANDER] * (contacts != "auto")], contacts)
+@pytest.mark.parametrize(("joined", "motors"), [(GEARED, ["one", "two"]), (BLOCKED["weld"], ["drive"])])
+def test_a_motor_that_does_nothing_is_told(
+    joined: list[dict[str, Any]], motors: list[str], contacts: str
+) -> None:
+    """Also where the rest of its joint is held twice."""
+    world = made([*joined, *[BYSTANDER] * (contacts != "auto")], contacts)
     world.run(steps=20)
-    told = {str(warning.what) for warning in find_warnings(world)}
-    assert any("a motor that does nothing" in what for what in told)
+    told = [one.entity for one in find_warnings(world) if "a motor that does nothing" in str(one.what)]
+    assert len(told) == 1
+    assert told[0] in motors
 
 
 def test_the_angle_of_what_cannot_turn_is_not_held_twice() -> None:

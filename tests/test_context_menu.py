@@ -5,7 +5,7 @@ from collections.abc import Callable
 
 import pygame
 import pytest
-from desk import SETTLED, Desk, choose, click, click_at, empty_world, fill, tap
+from desk import SETTLED, Desk, choose, click, click_at, empty_world, fill, tap, write
 
 from physicslab.components import (
     Colour,
@@ -191,6 +191,18 @@ def test_copies_are_made_where_there_is_room(desk: Desk) -> None:
     assert sorted(found) == pytest.approx([0.0, 0.8, 1.6, 2.4, 3.2, 4.0]), "one place was taken"
     assert "for 1 there is no room" in desk.window.notice
     assert len(desk.window.edits.history.entries) == 1, "one undo"
+
+
+def test_enter_in_the_panel_of_copies_takes_over_a_number_and_then_makes_them(desk: Desk) -> None:
+    """It went to the name of the body in the panel at the right."""
+    desk.window.selection.entities = tuple(desk.world.entities()[:1])
+    desk.frames()
+    tap(desk, "d", pygame.KMOD_SHIFT | pygame.KMOD_CTRL)
+    write(desk, "3")
+    tap(desk, "return")
+    assert len(desk.world.batch(Shape)) == 1
+    tap(desk, "return")
+    assert len(desk.world.batch(Shape)) == 3 and desk.window.copying is None
 
 
 def test_the_panel_of_copies_goes_with_what_they_are_of(desk: Desk) -> None:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pygame
 import pytest
-from desk import Desk, empty_world
+from desk import Desk, empty_world, tap
 
 from physicslab import load_scene
 from physicslab.components import (
@@ -447,6 +447,16 @@ def test_a_polygon_is_closed_at_its_first_corner(desk: Desk) -> None:
     assert tuple(body.position) == pytest.approx((2.0 / 3.0, 0.5), abs=0.01), "its centre of mass"
     assert made(desk, Mass).mass == pytest.approx(5.0 * 1.5, rel=0.02)
     assert not desk.window.sketch.grips
+
+
+def test_a_polygon_is_closed_at_its_last_corner_too_as_enter_does(desk: Desk) -> None:
+    clicks(desk, "polygon", (0.0, 0.0), (2.0, 0.0))
+    tap(desk, "return")
+    assert not desk.world.entities() and len(desk.window.sketch.grips) == 3, "two corners enclose nothing"
+    desk.window.sketch.cancel()
+    clicks(desk, "polygon", (0.0, 0.0), (2.0, 0.0), (0.0, 1.5))
+    tap(desk, "return")
+    assert len(only(desk.world, Shape).vertices) == 3 and not desk.window.sketch.grips
 
 
 def test_the_order_of_corners_does_not_matter_and_hollow_ones_are_welded_parts(desk: Desk) -> None:

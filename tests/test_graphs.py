@@ -45,6 +45,16 @@ def test_m_plots_what_is_selected_and_it_is_written_as_a_table(desk: Desk, tmp_p
     assert [float(value) for value in first.split(",")][3] == pytest.approx(2.0)
 
 
+def test_m_over_a_body_plots_it_where_nothing_is_selected(desk: Desk) -> None:
+    """It took two acts, and in a window whose graph is there one elsewhere."""
+    ball = ball_of(desk)
+    desk.window.selection.clear()
+    pause(desk)
+    desk.move(*desk.world.component(ball, Transform).position)
+    tap(desk, "m")
+    assert [line.key for line in graph_of(desk).lines] == [(ball, "x"), (ball, "y"), (ball, "speed")]
+
+
 def test_a_graph_is_taken_back_and_put_back_with_its_samples(desk: Desk) -> None:
     ball = ball_of(desk)
     pause(desk)

@@ -188,7 +188,7 @@ def test_dropped_time_is_announced_and_then_forgotten() -> None:
     desk.frames(240)
     desk.frames(8, elapsed=0.175)
     canvas.calls.clear()
-    desk.frames()
+    desk.frames(8)  # where nothing moves it is drawn each tenth of a second
     assert "The computer is too slow: 0.6 s were skipped" in canvas.words
     desk.frames(240)
     frame(desk, canvas)
@@ -204,6 +204,26 @@ def test_time_that_was_dropped_while_the_physics_was_prepared_is_no_slow_compute
     canvas.calls.clear()
     desk.frames(3)
     assert not any("skipped" in words for words in canvas.words)
+
+
+def test_figures_are_not_read_in_the_frame_that_shows_them(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Both together took twice as long as any other frame, a dozen times a minute and more."""
+    desk, _ = recorded(load_scene("drop"))
+    desk.frames(30)
+    interface, number, shown, read = desk.sandbox.interface, 0, set[int](), set[int]()
+    refresh, figures = interface.toolkit.refresh, interface._figures
+
+    def note() -> None:
+        shown.add(number)
+        refresh()
+
+    monkeypatch.setattr(interface.toolkit, "refresh", note)
+    for number in range(60):
+        desk.frames()
+        if interface._figures is not figures:
+            read.add(number)
+        figures = interface._figures
+    assert len(read) >= 4 and len(shown) >= 4 and not read & shown
 
 
 def test_numbers_are_read_five_times_a_second_and_not_more_often() -> None:

@@ -13,6 +13,7 @@ from desk import SETTLED, Desk, empty_world, sized, tap, write
 from physicslab import World, cli
 from physicslab.components import (
     Charge,
+    Colour,
     Graph,
     GraphLine,
     Mass,
@@ -97,6 +98,15 @@ def test_shapes_are_elastic_and_smooth(file: Path) -> None:
         world.component(disc, Material).restitution == 1.0 and world.component(disc, Material).friction == 0.0
     )
     assert losses == []
+
+
+def test_colours_that_were_chosen_are_kept(file: Path) -> None:
+    red, plain = item(5, "Box", color="#ffFF8000"), item(6, "Box", color="#ff000000", position="(3,0)")
+    world, losses = opened(file, red, plain)
+    assert world.component(world.entity("Box5"), Colour).colour == "#ff8000"
+    assert not world.has(world.entity("Box6"), Colour) and losses == []
+    with pytest.raises(SceneError, match='<color> = "red": must be a colour #aarrggbb'):
+        opened(file, item(5, "Box", color="red"))
 
 
 def test_polygons_are_centred_and_those_that_are_not_convex_are_named(file: Path) -> None:

@@ -15,7 +15,7 @@ from physicslab.components import Transform
 from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import load_scene
 from physicslab.prefabs import box, circle
-from physicslab.view.canvas.canvas import Rect
+from physicslab.view.canvas.canvas import Rect, overlap
 from physicslab.view.controls.lesson_actions import choose_language
 from physicslab.view.overlay import banners
 
@@ -103,6 +103,26 @@ def test_a_notice_covers_no_moving_body(x: float, aside: bool, monkeypatch: pyte
     place = desk.window.camera.to_screen(desk.world.component(body, Transform).position)
     assert not pause.inflate(20, 20).collidepoint(place)
     assert (abs(pause.centerx - (left + width // 2)) > 20) == aside
+
+
+def test_no_banner_lies_behind_a_meter(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Half of the second one's words were behind the meter below it."""
+    drawn: list[list[Rect]] = []
+    draw = banners.draw_banners
+
+    def spy(*arguments: Any) -> list[Rect]:
+        drawn.append(draw(*arguments))
+        return drawn[-1]
+
+    monkeypatch.setattr(banners, "draw_banners", spy)
+    desk = sized((1280, 720), load_scene("carts"), 1.5)
+    for key in ("[", "o", "z"):
+        tap(desk, key)
+    desk.frames(SETTLED)
+    desk.frames(9, elapsed=0.175)
+    assert drawn[-1] and not any(
+        overlap(one, other) for one in drawn[-1] for other in desk.sandbox.interface.covered
+    )
 
 
 def test_more_sky_than_ground_is_shown_where_bodies_fall_down() -> None:

@@ -8,9 +8,10 @@ from desk import SETTLED, Desk, bits, click, empty_world, tap, write
 from test_hud import frame, recorded
 
 from physicslab import World
-from physicslab.components import Graph, Held, Material, Transform, Velocity
+from physicslab.components import Gate, Graph, Held, Material, Note, Ruler, Transform, Velocity
 from physicslab.desktop import session_window
 from physicslab.files.scene import load_scene, save_scene
+from physicslab.history import Spawn
 from physicslab.prefabs import circle
 from physicslab.view.controls import dashboard_actions, file_actions, saving
 from physicslab.view.controls.saving import new_scene_paths
@@ -280,6 +281,26 @@ def test_starting_a_new_scene_again_keeps_what_was_built() -> None:
     desk.frames(20)
     tap(desk, "r", CTRL)
     assert desk.world.time == 0.0 and len(desk.world.entities()) == 2
+
+
+def test_starting_again_keeps_what_measures(folder: Path) -> None:
+    """A gate that was put there to time a run was gone with its next start."""
+    desk = opened(folder / "mine.json")
+    ball, do = desk.world.entity("ball"), desk.window.edits.do
+    gate = [Gate(start=(1.0, 0.0), end=(1.0, 2.0))]
+    for parts, name in ((gate, "finish"), ([Note("here", (0.0, 1.0))], None), ([Ruler(end_body=ball)], None)):
+        do(Spawn(parts, name))
+    desk.frames(20)
+    for _ in range(2):
+        before, count = desk.world, len(desk.world.entities())
+        tap(desk, "r", CTRL)
+        assert desk.world is not before and len(desk.world.entities()) == count
+        assert desk.world.has("finish", Gate) and len(desk.world.batch(Note)) == 1
+        (ruler,) = desk.world.batch(Ruler).entities.tolist()
+        assert desk.world.component(ruler, Ruler).end_body == desk.world.entity("ball")
+    file_actions.open_scene(desk.window, folder / "mine.json")
+    desk.frames(SETTLED)
+    assert not len(desk.world.batch(Gate)) and len(desk.world.entities()) < count
 
 
 def test_clear_takes_the_title_too_and_undo_brings_it_back() -> None:

@@ -13,8 +13,10 @@ from desk import SETTLED, Desk, bits, click, fill, tap
 
 from physicslab.commands import export, progress
 from physicslab.commands.variations import variations
-from physicslab.components import Shape, Slider
+from physicslab.components import Colour, Graph, GraphLine, Mass, Note, Shape, Slider, Transform, Velocity
 from physicslab.files.scene import load_scene
+from physicslab.history import AddComponent, SetField, Spawn
+from physicslab.history.commands import SetText
 from physicslab.view.controls import share_actions
 from physicslab.view.controls.lesson_actions import open_lesson
 from physicslab.view.window.sharing import FROM_START, WHOLE_LESSON, Sharing
@@ -192,6 +194,38 @@ def test_sliders_of_the_scene_become_those_of_the_page(desk: Desk) -> None:
     assert second.span == "0.5:1.5:9", "around the 1 m/s that it has"
     share_actions.choose_slid(desk.world, desk.window, second, gravity)
     assert second.span == "-14.7:-4.91:9"
+
+
+def test_a_page_from_the_start_has_the_texts_and_instruments_that_were_added_since(
+    desk: Desk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A page of a scene that was running had no title, no note, no gate and no graph."""
+    scene, do, world = tmp_path / "scene.json", desk.window.edits.do, desk.world
+    monkeypatch.setattr(Sharing, "make", lambda _, write, path: write(scene))
+    desk.window.pace.paused = False
+    desk.frames(30)
+    ball, bodies = world.entity("ball"), len(world.batch(Transform))
+    do(SetText("title", "Two bounces"))
+    (graph,) = do(Spawn([Graph()]))
+    (late,) = do(Spawn([Transform((2, 2)), Velocity(), Mass(1.0), Shape.circle(0.1)], "late"))
+    do(Spawn([Note("look", (1, 1))]))
+    for body in (ball, late):
+        do(Spawn([GraphLine(graph, "y", body)]))
+    do(AddComponent(ball, Colour("#ff0000")))
+    do(SetField(ball, "Mass", "mass", 9.0))
+    desk.window.pace.paused = True
+    desk.frames(SETTLED)
+    before, count = bits(world), len(world.entities())
+    tap(desk, "f8")
+    tap(desk, "return")
+    begun = load_scene(scene)
+    assert (begun.title, begun.time, len(begun.batch(Transform))) == ("Two bounces", 0.0, bodies)
+    assert begun.component("ball", Transform).position.y == 4.0
+    assert begun.component("ball", Mass).mass == 1.0, "what it was then"
+    assert begun.component("ball", Colour).colour == "#ff0000"
+    assert len(begun.batch(Note)) == 1
+    assert len(begun.batch(GraphLine)) == 1, "none of a body that came later"
+    assert bits(world) == before and len(world.entities()) == count
 
 
 @pytest.mark.slow

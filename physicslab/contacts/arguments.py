@@ -43,13 +43,8 @@ def acting_in(state: State) -> ActingTuple:
 
 def joints_in(state: State) -> Plain[Joints]:
     """Return the rows of joints."""
-    joints = state.joints
-    joints.refresh(state.entity_index)
-    return (
-        joints.measure, joints.a, joints.b, joints.anchor_a, joints.anchor_b, joints.axis, joints.scale,
-        joints.role, joints.offset, joints.target, joints.strongest, joints.impulse, joints.largest,
-        *joints.blocks, *joints.buffers,
-    )  # fmt: skip
+    state.joints.refresh(state.entity_index)
+    return state.joints.plain
 
 
 def bounds_of(state: State) -> Plain[Bounds]:

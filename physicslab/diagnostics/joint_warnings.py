@@ -74,7 +74,9 @@ def joint_warnings(world: World) -> Iterator[ModelWarning]:
             what = sentence("ends_in_one_place")
             yield ModelWarning.about(world, joint.entity, what, setting=sentence("a_pin"))
             return
-        if (world.joints.role[dependent] == Role.MOTOR).all():
+        blocked = dependent & (world.joints.role == Role.MOTOR)
+        if blocked.any():
+            joint = joints[int(joints_of_rows(world)[int(np.argmax(blocked))])]
             yield ModelWarning.about(world, joint.entity, sentence("blocked_motor"))
             return
         what = sentence("redundant")

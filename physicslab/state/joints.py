@@ -11,9 +11,11 @@ from physicslab.components import Velocity, Weld
 from physicslab.ecs.component import InvalidValue
 from physicslab.ecs.entity_index import EntityIndex
 from physicslab.ecs.sentences import sentence
+from physicslab.kernels import Plain
+from physicslab.kernels.joints.blocks import Joints as JointArguments
 from physicslab.languages.sentence import Sentence
 from physicslab.state.entities import label_in_context
-from physicslab.state.joint_order import NO_BLOCKS, buffers_of, order_rows
+from physicslab.state.joint_order import NO_BLOCKS, Blocks, buffers_of, order_rows
 from physicslab.state.joint_rows import KINDS, Joined, Measure, Role, Row, Term, ends_of, measured
 
 
@@ -70,6 +72,8 @@ class Joints:
     buffers : tuple of float64 arrays
         Room for what is computed of the ends, nodes and entries of blocks
         (:mod:`physicslab.kernels.joints.blocks`).
+    plain : tuple
+        The arguments of kernels that work on rows.
     beside_contacts : bool
         Whether contacts are solved at all, and joints with them.
     dependent : bool array (n,)
@@ -107,9 +111,16 @@ class Joints:
             np.array([row[n] for row in rows], np.float64) for n in range(2, 5)
         )
         self.impulse, self.force, self.largest = np.zeros((3, len(rows)))
-        self.blocks, self.buffers = NO_BLOCKS, buffers_of(NO_BLOCKS)
+        self._set_blocks(NO_BLOCKS)
         self.edges, self.apart = np.zeros((2, 0, 2), np.int64)
         self.dependent = np.zeros(len(rows), np.bool_)
+
+    def _set_blocks(self, blocks: Blocks) -> None:
+        self.blocks, self.buffers = blocks, buffers_of(blocks)
+        self.plain: Plain[JointArguments] = (
+            self.measure, self.a, self.b, self.anchor_a, self.anchor_b, self.axis, self.scale, self.role,
+            self.offset, self.target, self.strongest, self.impulse, self.largest, *blocks, *self.buffers,
+        )  # fmt: skip
 
     def __len__(self) -> int:
         return len(self.role)
@@ -156,8 +167,7 @@ class Joints:
         self._take(joints, rows)
         moves = index.table(Velocity).present
         own_rows = [range(joint.first, joint.first + joint.size) for joint in joints]
-        self.blocks = order_rows(rows, own_rows, moves.tolist())
-        self.buffers = buffers_of(self.blocks)
+        self._set_blocks(order_rows(rows, own_rows, moves.tolist()))
         self.edges = np.array(sorted(edges), np.int64).reshape(-1, 2)
         self.apart = np.array(sorted(apart), np.int64).reshape(-1, 2)
         for joint in joints:

@@ -136,7 +136,8 @@ def _labels(state: State, schedule: Schedule, rows: Rows) -> Rows:
     axis = int(np.argmax(spread))
     order = np.argsort(position[:, axis], kind="stable")
     label_clusters(order[shaped[order]], axis, position, reach, labels)
-    return join(labels, labels[_couples(state, schedule, rows)].tolist())
+    coupled = labels[_couples(state, schedule, rows)]
+    return join(labels, coupled.tolist()) if len(coupled) else labels
 
 
 def _couples(state: State, schedule: Schedule, rows: Rows) -> Rows:

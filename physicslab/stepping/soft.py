@@ -113,7 +113,7 @@ class Soft(Stepper):
 
     def _note_energy(self, state: State) -> None:
         """Note what contacts have taken at most and given since; from here on where time went back."""
-        given = float(state.account.sums[CONTACT, ENERGY])
+        given = state.account.sums.item(CONTACT, ENERGY)
         if state.time < self._last:
             self.energy_taken = -math.inf
         self.energy_taken, self._last = max(self.energy_taken, -given), state.time

@@ -122,6 +122,8 @@ def _take(
             item,
             f"its centre of mass is ({-centre[0]:g}, {-centre[1]:g}) m off that of its area; here it is not",
         )
+    if item.colour():
+        parts["Colour"] = {"colour": item.colour()}
     body.entity = draft.place(item, parts)
     draft.bodies[item.number] = body
 

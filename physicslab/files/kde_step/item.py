@@ -101,6 +101,14 @@ class Item:
             raise self._refusal(name, "a whole number")
         return int(text)
 
+    def colour(self) -> str:
+        """Return its colour as ``#rrggbb``; empty for none, and for black, which all begin with."""
+        text = self.text("color").strip().lower()
+        found = re.fullmatch("#(?:[0-9a-f]{2})?([0-9a-f]{6})", text)
+        if text and not found:
+            raise self._refusal("color", "a colour #aarrggbb")
+        return "" if not found or found[1] == "000000" else f"#{found[1]}"
+
     def flag(self, name: str) -> bool:
         """Return whether a property is set."""
         return self.text(name).strip() in ("true", "1")

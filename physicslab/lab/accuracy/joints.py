@@ -10,6 +10,7 @@ from functools import partial
 import numpy as np
 
 from physicslab.components import Gear, Mass, Pin, Pulley, Rod, Rope, Shape, Slot, Transform, Velocity
+from physicslab.diagnostics.joints import joint_states
 from physicslab.ecs.config import SimulationConfig
 from physicslab.ecs.vector import rotated
 from physicslab.lab.accuracy.problem import Ladder, Problem, number, on_record, state_error
@@ -112,11 +113,19 @@ def _slider_crank(simulation: SimulationConfig, spin: float, *, driven: bool) ->
 
 
 def _driven_error(world: World, i: int) -> float:
-    """Return the error of the slider's place and speed, by the angle of the crank at that time."""
-    s, c = math.sin(_DRIVE * _MOMENTS[i]), math.cos(_DRIVE * _MOMENTS[i])
-    w = math.sqrt(_ROD**2 - (_CRANK * s) ** 2)
-    where, speed = (_CRANK * c + w, 0.0), _DRIVE * (-_CRANK * s - _CRANK**2 * s * c / w)
-    return state_error(world, "slider", where, (speed, 0.0), _DRIVE)
+    """Return the error of the slider's place and speed by the crank's angle, and of the motor's torque.
+
+    The torque does the work of all that moves at that rate w: J' w^2 / 2 + U', for 2 T = J w^2.
+    """
+    s, c, r = math.sin(_DRIVE * _MOMENTS[i]), math.cos(_DRIVE * _MOMENTS[i]), _CRANK
+    w = math.sqrt(_ROD**2 - (r * s) ** 2)
+    x1 = -r * s - r * r * s * c / w  # the slider's place by the angle, once and twice
+    x2 = -r * c - r * r * ((c * c - s * s) / w + (r * s * c) ** 2 / w**3)
+    t1, t2 = -r * c / w, r * s / w - r**3 * s * c * c / w**3  # the rod's angle
+    half_j = 0.25 * ((x1 - r * s) * (x2 - r * c) - r * r * s * c) + _ROD**2 / 12.0 * t1 * t2 + x1 * x2
+    torque = half_j * _DRIVE**2 + GRAVITY * r * c
+    off = abs(joint_states(world)[0].torque - torque) / (GRAVITY * r)
+    return max(state_error(world, "slider", (r * c + w, 0.0), (_DRIVE * x1, 0.0), _DRIVE), off)
 
 
 def _free_error(world: World, i: int) -> float:
@@ -194,8 +203,9 @@ JOINED = (
     ),
     _mechanism(
         name="slider_crank_driven", source="slider_crank", title="A slider-crank that a motor turns",
-        compared="x, vx of the slider after 1 and 10 s", error=_driven_error, keeps=frozenset(),
-        measure="largest error of x, y and of vx, vy over the spin [m]",
+        compared="x, vx of the slider and the motor's torque after 1 and 10 s", error=_driven_error,
+        measure="largest error of x, y, of vx, vy over the spin [m], and of the torque over m g r",
+        keeps=frozenset(),
         build=lambda simulation: _slider_crank(simulation, _DRIVE, driven=True),
     ),
     _mechanism(

@@ -67,8 +67,7 @@ class Display:
             pygame.font.init()
             pygame.display.set_icon(_icon())
             density = _dpi() / _USUAL_DPI
-            size = [round(density * side) for side in config.size]
-            surface = pygame.display.set_mode(size, pygame.RESIZABLE)
+            surface = pygame.display.set_mode(_size_at_first(config, density), pygame.RESIZABLE)
         except pygame.error as error:
             pygame.quit()
             raise NoScreen(f"no window can be opened: {error}; {_WITHOUT_WINDOW}") from error
@@ -132,6 +131,15 @@ class Display:
                 create_file(path, picture.getvalue())
                 break
         return path
+
+
+def _size_at_first(config: WindowConfig, density: float) -> list[int]:
+    """Return the size of the window at the start [px]: no larger than the screen, where there is one."""
+    size = [round(density * side) for side in config.size]
+    if pygame.display.get_driver() in _INVISIBLE:
+        return size
+    screen = pygame.display.get_desktop_sizes()[0]
+    return [max(min(sides), least) for *sides, least in zip(size, screen, config.least_size, strict=True)]
 
 
 def _dpi() -> float:

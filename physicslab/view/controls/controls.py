@@ -50,13 +50,16 @@ def walk(world: World, window: Window) -> None:
 
 
 def enter(world: World, window: Window) -> None:
-    """Go to the first field of the selection; without one, click with the tool at the cursor.
+    """Go to the first field of the selection, or make the copies that are shown; else click with the tool.
 
     A tool that is dragged is pressed by one Enter and let go by the next. While a button is held to draw, as
     after typing numbers, Enter puts down the point of that drawing.
     """
     if window.sketch.held and not window.presses_by_key:
         _post(pygame.MOUSEBUTTONDOWN, _cursor(window), button=window.sketch.held)
+        return
+    if window.copying is not None:
+        copies.make_copies(world, window)
         return
     if window.selection.entities and not window.presses_by_key:
         window.keys_go_to = "fields"
@@ -323,7 +326,7 @@ CONTROLS: tuple[Control, ...] = (
             state=lambda _, window: window.overlays.keeps_scales,
             tip="Arrows keep their scale, so that two pictures can be compared"),
     Control("M", "graph", "m", dashboard_actions.plot_selected, group="measure",
-            tip="A graph against time: of the selection, or of the energies"),
+            tip="A graph against time: of the selection, of the body at the cursor, or of the energies"),
     Control("Shift+M", "phase plot", "shift+m", dashboard_actions.plot_phase, group="measure",
             tip="The velocity of the selected body against its position"),
     Control("Ctrl+M", "meter", "ctrl+m", dashboard_actions.add_meter, group="measure",

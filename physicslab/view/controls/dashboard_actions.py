@@ -17,6 +17,7 @@ from physicslab.ecs.vector import Vector2
 from physicslab.history import AddComponent, Command, Group, Remove, SetField, SetPhysics, Spawn
 from physicslab.languages.sentence import Sentence
 from physicslab.view.controls import actions
+from physicslab.view.controls.picking import body_at
 from physicslab.view.controls.saving import save_new
 from physicslab.view.window.dashboard import Dashboard, GraphShown, SliderShown
 from physicslab.view.window.listening import tone
@@ -40,8 +41,14 @@ _USUAL = {
 
 
 def plot_selected(world: World, window: Window) -> None:
-    """Plot the selection against time, of joints and springs their force; else the world's energies."""
+    """Plot the selection against time, of joints and springs their force; else what moves at the cursor.
+
+    Without either, the world's energies are plotted.
+    """
     bodies = window.selection.bodies(world)
+    if not window.selection.entities and not window.pointer_on_panel:
+        body = body_at(world, window.camera, window.pointer)
+        bodies = [] if body is None or not world.has(body, Velocity) else [body]
     if not bodies:
         pulls = _pulls(world, window)
         energies: list[Key] = [(None, name) for name in _ENERGIES]

@@ -35,7 +35,7 @@ _MIDDLE = 10.0
 _LEAST = 3.0
 """The least side of a box that is drawn [px]."""
 _CLOSING, _STEP = 10.0, 5.0
-"""How near to its first point a polygon is closed, and how far apart the points of a stroke are [px]."""
+"""How near to an end a polygon is closed, and how far apart the points of a stroke are [px]."""
 
 type Build = Callable[[World, Sequence[Vector2], Recipe], None]
 """Makes bodies in a world of their own, through points [m]."""
@@ -240,10 +240,10 @@ def _put(world: World, window: Window, drawn: Drawn, place: Vector2) -> None:
 
 
 def _is_closed(window: Window, place: Vector2) -> bool:
-    """Whether a place [m] is at the first point of a polygon that has at least three."""
+    """Whether a place [m] is at the first or the last point of a polygon that has at least three."""
     grips = window.sketch.grips
     near = _CLOSING / window.camera.scale
-    return len(grips) > 2 and (grips[0].anchor - place).magnitude <= near
+    return len(grips) > 2 and any((grips[end].anchor - place).magnitude <= near for end in (0, -1))
 
 
 def follow(window: Window, drawn: Drawn | None) -> None:

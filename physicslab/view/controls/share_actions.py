@@ -1,18 +1,20 @@
 """Actions that make a page of a scene, for any browser."""
 
+import copy
 import os
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from physicslab.components import Held, Shape, Slider, Velocity
+from physicslab.components import Held, MadeOf, Shape, Slider, Velocity
 from physicslab.components.slider import GRAVITY
-from physicslab.ecs.component import Component
+from physicslab.ecs.component import Component, InvalidValue
 from physicslab.ecs.text import printable, unique_name
 from physicslab.export.page import field_words
 from physicslab.files.places import SECTIONS, find_place
 from physicslab.files.replace import create_file, reason_of, replace_file
 from physicslab.files.scene import SceneError, file_stem, save_scene
+from physicslab.stepping.keyframe import Keyframe
 from physicslab.view.controls.saving import name_of
 from physicslab.view.window.naming import Naming, free_name, new_paths
 from physicslab.view.window.sharing import FROM_START, WHOLE_LESSON, Sharing, Slid
@@ -151,8 +153,11 @@ def begin_sharing(world: World, window: Window, over: Path | None = None) -> Non
     window.edits.keep()
 
     def write(scene: Path) -> None:
+        begun = World()
         with gone_back(window, sharing.begins):
-            save_scene(world, scene)
+            Keyframe(world).fill(begun)
+        _show_alike(begun, world)
+        save_scene(begun, scene)
 
     try:
         sharing.make(write, path)
@@ -175,6 +180,29 @@ def gone_back(window: Window, begins: str) -> Iterator[None]:
     finally:
         if moved:
             history.seek(here)
+
+
+def _show_alike(begun: World, now: World) -> None:
+    """Give a scene as it was at its start the texts, names, colours and instruments that it has now."""
+    begun.name, begun.title, begun.description = now.name, now.title, now.description
+    begun.view, begun.desk = now.view, now.desk
+    for entity in set(begun.entities()) - set(now.entities()):
+        if all(map(_is_shown, begun.components(entity))):
+            begun.remove(entity)
+    there = set(begun.entities())
+    for entity in now.entities():
+        parts = now.components(entity)
+        shown = [copy.copy(part) for part in parts if _is_shown(part)]
+        if entity not in there and len(shown) == len(parts):
+            begun.spawn(*shown, entity=entity)
+        for part in shown if entity in there else ():
+            with suppress(InvalidValue):  # a body that is gone now may have had that name
+                begun.add(entity, part)
+
+
+def _is_shown(part: object) -> bool:
+    """Whether a component changes what is seen, and not the motion."""
+    return not getattr(part, "physical", True) and not isinstance(part, MadeOf)
 
 
 def _why_not(seconds: str, folder: Path) -> str:

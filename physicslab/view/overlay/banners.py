@@ -7,7 +7,7 @@ from physicslab.diagnostics.warnings import ModelWarning
 from physicslab.languages.sentence import proper
 from physicslab.theme import Colour
 from physicslab.view.canvas.camera import Drawing
-from physicslab.view.canvas.canvas import Canvas, Rect, TextStyle
+from physicslab.view.canvas.canvas import Canvas, Rect, TextStyle, overlap
 from physicslab.view.canvas.drawable_text import MAX_LETTERS, shortened
 
 
@@ -55,14 +55,18 @@ def pill_height(lines: int, style: TextStyle, canvas: Canvas) -> int:
     return canvas.text_size("Ag", style)[1] * lines + round(0.55 * style.size)
 
 
+def _pill_rect(words: Sequence[str], middle: int, top: int, style: TextStyle, canvas: Canvas) -> Rect:
+    """Return where a box with lines of words is around ``middle`` [px]."""
+    width = max(canvas.text_size(line, style)[0] for line in words) + pill_margin(style.size)
+    return middle - width // 2, top, width, pill_height(len(words), style, canvas)
+
+
 def draw_pill(words: Sequence[str], middle: int, top: int, size: int, colour: Colour, on: Drawing) -> Rect:
     """Draw lines of words in a box around ``middle``, and return where it is [px]."""
     style = TextStyle(size, colour, bold=True)
     pad = round(0.55 * size)
-    widths = [on.canvas.text_size(line, style)[0] for line in words]
     line_height = on.canvas.text_size("Ag", style)[1]
-    width, height = max(widths) + pill_margin(size), line_height * len(words) + pad
-    rect = (middle - width // 2, top, width, height)
+    rect = _pill_rect(words, middle, top, style, on.canvas)
     on.canvas.panel(rect, on.theme.panel, colour, 0.95)
     for n, line in enumerate(words):
         on.canvas.text(line, (middle, top + pad // 2 + n * line_height), style, "centre")
@@ -110,10 +114,12 @@ class DroppedTime:
         return self._sum if now < self._until and is_slow else 0.0
 
 
-def draw_banners(banners: Iterable[tuple[str, Colour]], room: Rect, on: Drawing) -> list[Rect]:
+def draw_banners(
+    banners: Iterable[tuple[str, Colour]], room: Rect, windows: Sequence[Rect], on: Drawing
+) -> list[Rect]:
     """Draw banners in their colours below each other, from the top of a room on; return where they are [px].
 
-    Those wider than it are broken into lines; those that would reach below it are left out.
+    Those wider than it are broken into lines; those that would reach below it, or into windows, are left out.
     """
     left, top, width, height = room
     middle, bottom = left + width // 2, top + height
@@ -121,7 +127,8 @@ def draw_banners(banners: Iterable[tuple[str, Colour]], room: Rect, on: Drawing)
     for words, colour in banners:
         style = TextStyle(on.size + 2, colour, bold=True)
         lines = broken(words, max(width - pill_margin(on.size + 2), 1), on.canvas, style)
-        if top + pill_height(len(lines), style, on.canvas) <= bottom:
+        rect = _pill_rect(lines, middle, top, style, on.canvas)
+        if top + rect[3] <= bottom and not any(overlap(rect, one) for one in windows):
             taken.append(draw_pill(lines, middle, top, on.size + 2, colour, on))
             top += on.size // 2 + taken[-1][3]
     return taken

@@ -49,6 +49,8 @@ class Dust:
 
     def draw(self, time: float, camera: Camera, theme: Theme, canvas: Canvas) -> None:
         """Draw all puffs at a time of the world [s]."""
+        if not len(self.puffs):
+            return
         age = np.clip((time - self.puffs[:, 2]) / _LIFE, 0.0, 1.0)
         centre = camera.project(self.puffs[:, :2])
         inside = ((centre > 0.0) & (centre < camera.size)).all(axis=1)

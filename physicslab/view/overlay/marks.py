@@ -68,6 +68,8 @@ _FAR = 1e6
 
 def draw_selection(world: World, entities: Sequence[int], on: Drawing, colour: Colour | None = None) -> None:
     """Draw a line around each body, or along a spring; in a colour, or that of the selection."""
+    if not entities:
+        return
     chosen = np.array(entities, np.int64)
     rows = world.entity_index.rows_of(chosen)
     placed = (rows > 0) & world.table(Transform).present[rows]

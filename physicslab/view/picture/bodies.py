@@ -167,9 +167,12 @@ def draw_bodies(
         boxes, rounded, discs = (
             part[fluid[part] == layer] for part in (rows.boxes, rows.rounded, rows.discs)
         )
-        _draw_boxes(world, boxes, camera, theme, canvas, squash)
-        _draw_rounded(world, rounded, camera, theme, canvas)
-        _draw_discs(world, discs, camera, theme, canvas, squash)
+        if len(boxes):
+            _draw_boxes(world, boxes, camera, theme, canvas, squash)
+        if len(rounded):
+            _draw_rounded(world, rounded, camera, theme, canvas)
+        if len(discs):
+            _draw_discs(world, discs, camera, theme, canvas, squash)
     _draw_points(world, rows.points, camera, theme, canvas)
 
 
@@ -193,6 +196,8 @@ def point_radius(world: World, entity: int) -> float:
 
 def _draw_points(world: World, rows: Rows, camera: Camera, theme: Theme, canvas: Canvas) -> None:
     """Draw bodies without a Shape; among planets one that outweighs all others shines."""
+    if not len(rows):
+        return
     centre, radius = camera.project(world.table(Transform)["position"][rows]), point_radii(world, rows)
     seen = _on_screen(centre, GLOW * radius, camera.size)
     if not seen.any():

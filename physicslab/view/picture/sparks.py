@@ -83,6 +83,9 @@ class Sparks:
         """
         if time < self._time:
             self.clear()
+        if not (len(impacts) or len(self) or len(self.rings)):
+            self._time = time
+            return
         elapsed = np.full(len(self), time - self._time)
         self._time = time
         seen = _seen(impacts, scale)

@@ -39,11 +39,13 @@ class Squash:
         """Return the middles (n, 2) [m] of bodies as they are drawn, and the shares of their sizes (n,)."""
         if not len(self._entities):
             return centre, np.ones(len(rows))
-        centre, size = centre.copy(), np.ones(len(rows))
-        entities = world.entity_index.entities[rows]
-        for entity, (x, y, time) in zip(self._entities.tolist(), self._hits.tolist(), strict=True):
-            for n in np.flatnonzero(entities == entity).tolist():
-                share = _SHARE * max(1.0 - (world.time - time) / _LIFE, 0.0)
-                centre[n] += share * (np.array((x, y)) - centre[n])
-                size[n] = 1.0 - share
-        return centre, size
+        index = world.entity_index
+        drawn_as = np.full(len(index.entities), -1)
+        drawn_as[rows] = np.arange(len(rows))
+        at = drawn_as[index.rows_of(self._entities)]
+        hits, at = self._hits[at >= 0], at[at >= 0]
+        share = _SHARE * np.maximum(1.0 - (world.time - hits[:, 2]) / _LIFE, 0.0)
+        moved, less = centre.copy(), np.zeros(len(rows))
+        np.add.at(moved, at, share[:, None] * (hits[:, :2] - centre[at]))
+        np.maximum.at(less, at, share)
+        return moved, 1.0 - less

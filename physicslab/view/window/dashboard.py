@@ -11,12 +11,15 @@ from physicslab.diagnostics.quantities import Reading
 from physicslab.ecs.component import Component
 from physicslab.history import History
 from physicslab.languages.sentence import Sentence
+from physicslab.state.attached import INSTRUMENTS
 from physicslab.view.window.fitting import Fitting
 from physicslab.view.window.record import Key, PastSamples, Record
 from physicslab.world import World
 
 PANELS: tuple[type[Component], ...] = (Graph, GraphLine, Meter, Slider)
 """The components that are panels of the window."""
+_CARRIED: tuple[type[Component], ...] = (*PANELS, *INSTRUMENTS)
+"""The components of what measures, and is there again where a scene is started again."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -242,7 +245,8 @@ def _all[C: Component](world: World, kind: type[C]) -> list[tuple[int, C]]:
 
 
 def _instruments(world: World) -> list[int]:
-    return sorted({int(entity) for kind in PANELS for entity in world.batch(kind).entities})
+    found = {int(entity) for kind in _CARRIED for entity in world.batch(kind).entities}
+    return sorted(entity for entity in found if not world.has(entity, Transform))
 
 
 def carried_over(before: World, world: World, instruments: Iterable[int]) -> dict[int, int]:
@@ -255,10 +259,11 @@ def carried_over(before: World, world: World, instruments: Iterable[int]) -> dic
     """
     known = _same_entities(before, world)
     for entity in instruments:
-        parts = [before.component(entity, kind) for kind in PANELS if before.has(entity, kind)]
+        parts = [before.component(entity, kind) for kind in _CARRIED if before.has(entity, kind)]
         made = [_referring(part, known) for part in parts]
         if all(part is not None for part in made):
-            known[entity] = world.spawn(*made)
+            named = before.has(entity, Name) and entity not in known
+            known[entity] = world.spawn(*made, name=before.label(entity) if named else None)
     return known
 
 

@@ -140,7 +140,9 @@ class Sketch:
 
     def _is_free(self, rect: tuple[float, float, float, float]) -> bool:
         """Whether neither words, arrows nor axes are in a rectangle."""
-        if any(overlap(one, rect) for one in self.taken):
+        left, top, width, height = rect
+        gap = 0.5 * self.ui.size  # words that touch read as one
+        if any(overlap(one, (left - gap, top, width + 2.0 * gap, height)) for one in self.taken):
             return False
         around = pygame.FRect(rect).inflate(_HEAD[1], _HEAD[1])  # heads are wider than the line
         if any(around.clipline(*start, *end) for start, end in self.arrows):

@@ -2,6 +2,8 @@
 
 from dataclasses import replace
 
+from imgui_bundle import imgui
+
 from physicslab.view.controls.copies import make_copies
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.copying import WAYS, Copying
@@ -20,7 +22,7 @@ def shown_name(name: str) -> str:
 
 
 class CopiesPanel:
-    """The panel of copies; text half written is kept from frame to frame."""
+    """The panel of copies, with keys in its first field; text half written is kept from frame to frame."""
 
     def __init__(self) -> None:
         self._numbers = NumberFields()
@@ -40,10 +42,13 @@ class CopiesPanel:
             way = ui.choice("way", copying.way, WAYS, width=_WIDTH * ui.size)
             if way != copying.way:
                 window.do_next(lambda _, window: window.put("copying", replace(copying, way=way)))
+            if imgui.is_window_appearing():
+                ui.keys_go_to = "fields"
             for name in Copying.OF[copying.way]:
                 self._row(ui, window, copying, name)
             count = len(copying.offsets) + 1
-            ui.button("Make copies", "As one edit", make_copies, shown=f"Make them: {count} in all")
+            tip, shown = "As one edit; Enter does so too", f"Make them: {count} in all"
+            ui.button("Make copies", tip, make_copies, shown=shown)
 
     def _row(self, ui: Ui, window: Window, copying: Copying, name: str) -> None:
         spec = Copying.FIELDS[name]

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Literal
 
 from physicslab.components import Held, Mass, Transform, Velocity
@@ -69,8 +70,8 @@ class WorldFigures:
 
     Attributes
     ----------
-    bodies, asleep, candidate_pairs, contacts : int
-        How many bodies there are and sleep, pairs that are near each other, and pairs that touch.
+    bodies, asleep, contacts : int
+        How many bodies there are and sleep, and pairs that touch.
     energy : Energy
         Kinetic and potential [J].
     audit : Audit
@@ -94,7 +95,7 @@ class WorldFigures:
     def __init__(self, world: World, watch: EnergyWatch, frame_rate: float = 0.0) -> None:
         contacts, moving = world.contacts, world.batch(Transform, Velocity).rows
         self.bodies, self.asleep = len(body_rows(world).all), world.sleep.count
-        self.candidate_pairs, self.contacts = count_near_pairs(world), contacts.count
+        self._world, self.contacts = world, contacts.count
         self.audit = watch.sample(world)
         self.energy, now = self.audit.latest, self.audit.account.now
         self.momentum = Momentum(Vector2(now.px, now.py), now.spin)
@@ -103,6 +104,11 @@ class WorldFigures:
         self.known, self.since = watch.known, watch.since
         self.error = 0.0 if self.known is None else self.known.error(world)
         self.scales, self.frame_rate = scales_of(world), frame_rate
+
+    @cached_property
+    def candidate_pairs(self) -> int:
+        """Number of pairs near each other when it is first read: counting takes time, one level shows it."""
+        return count_near_pairs(self._world)
 
     def joules(self, energy: float) -> str:
         """Return an energy in words; what is rounding beside the energies exchanged is 0."""

@@ -164,14 +164,14 @@ def build_readings(ui: Ui, world: World, window: Window, graph: GraphShown) -> N
         return
     spans = _fits(window, graph) or _spans(window, graph)
     style = imgui.get_style()
-    used, room = 0.0, imgui.get_content_region_avail().x
+    used, room, scales = 0.0, imgui.get_content_region_avail().x, scales_of(world)
     for colour, key in _entries(ui, world, graph):
         name = line_name(graph, key, window)
         if spans is not None:
             if colour is not None:
                 _entry(ui, colour, name, spans[key], wrapped=True)
             continue
-        value, usual = _value(world, window, key, row), f"{_VALUE} {unit_of(key)}"
+        value, usual = _value(world, window, key, row, scales), f"{_VALUE} {unit_of(key)}"
         width = (_MARK + 0.4) * ui.size if colour is not None else 0.0
         width += ui.width(f"{ui.said(name)} ")
         width += max(ui.width(usual), ui.width(value))
@@ -223,13 +223,13 @@ def _entry(ui: Ui, colour: Colour | None, name: str, value: str, *, wrapped: boo
     ui.text(value, wrapped=wrapped)
 
 
-def _value(world: World, window: Window, key: Key, row: int | None) -> str:
+def _value(world: World, window: Window, key: Key, row: int | None, scales: dict[str, float]) -> str:
     """Return a value in words, or the reason why it is missing."""
     value = np.nan if row is None else float(window.dashboard.record.values(key)[row])
     why = why_undefined(world, key[1], key[0])
     if np.isnan(value):
         return f"({why})" if why else "not recorded"
-    value = without_rounding(value, scale_of(key, scales_of(world)))
+    value = without_rounding(value, scale_of(key, scales))
     words, record = quantity(value, unit_of(key)), window.dashboard.record
     return f"{words} (gone)" if why == "gone" and world.time >= record.times[-1] else words
 

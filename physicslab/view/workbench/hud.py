@@ -167,7 +167,8 @@ class Hud:
         bottom = min(rect[1] for rect in taken) - margin
         begin, wide, edge = self._free_strip(at_top=True)
         begin, across, first = begin + margin, wide - 2 * margin, edge + margin
-        shown = banners.draw_banners(self._banners(world), (begin, first, across, bottom - first), on)
+        strip = begin, first, across, bottom - first
+        shown = banners.draw_banners(self._banners(world), strip, self._windows, on)
         below = shown[-1][1] + shown[-1][3] + margin if shown else first
         advice = self._draw_advice(world, (begin, below, across, bottom - below))
         taken += [*shown, *([] if advice is None else [advice])]

@@ -105,6 +105,8 @@ class Layout:
 
 _PERIOD = 0.2
 """Time [s] after which panels are built again where nothing was done: faster digits cannot be read."""
+_WAIT = 0.05
+"""Time [s] for which new figures are not shown, so that one frame does not read and show them."""
 _BESIDE = 12
 """How near to a panel a press makes no body: it may have been meant for that [px]."""
 _WATCHED = attrgetter(
@@ -159,6 +161,7 @@ class Interface:
         self._copies, self._lesson = CopiesPanel(), LessonPanel()
         self._note, self._about = NotePanel(), AboutPanel()
         self._next = self._palette = 0.0
+        self._figures: WorldFigures | None = None
         self._offer_height = self._bar_height = (
             0  # of what is offered at the top of the room, and the first [px]
         )
@@ -271,7 +274,9 @@ class Interface:
             self.ui.rearrange(as_at_first=not window.arrangements[width])
         self._follow_keys()
         seen = self._state(world)
-        if seen != self._seen or window.now >= self._next:
+        late, is_new, self._figures = window.now - self._next, figures is not self._figures, figures
+        is_due = late >= (_WAIT if is_new else 0.0)
+        if seen != self._seen or is_due:
             if seen != self._seen:
                 self.toolkit.wake()
             else:

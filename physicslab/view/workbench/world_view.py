@@ -184,12 +184,14 @@ class WorldView:
         """Write the force of the joint under the cursor, where the tool in hand draws nothing."""
         window = self._window
         idle = window.hand.entity is None and window.pins.dragged is None and not window.pointer_on_panel
-        if window.tool != SELECT.name or not idle or not world.joints.joints:
+        if window.tool != SELECT.name or not idle or not window.has_pointed or not world.joints.joints:
             return
         camera, at = on.camera, window.pointer
         found = joint_at(world, camera, at)
-        if found is None and body_at(world, camera, at) is None:
+        if found is None:
             found = joint_at(world, camera, at, lines=True)
+            if found is not None and body_at(world, camera, at) is not None:  # which lies before it
+                return
         for joint in joint_states(world) if found is not None else ():
             if joint.entity == found:
                 words = f"{plain_kind(joint.kind)}: {quantity(joint.force.magnitude, 'N')}"
