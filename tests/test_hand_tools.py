@@ -4,10 +4,10 @@ import math
 
 import pygame
 import pytest
-from desk import Desk, bits, click_at, empty_world, tap
+from desk import Desk, bits, click_at, empty_world, tap, write
 from test_hud import frame, recorded
 
-from physicslab.components import Held, Spring, Transform, Velocity
+from physicslab.components import Held, Mass, Spring, Transform, Velocity
 from physicslab.ecs.vector import Vector2
 from physicslab.history import RemoveComponent
 from physicslab.prefabs import box, circle, pendulum
@@ -53,6 +53,55 @@ def test_a_static_body_and_one_in_the_hand_can_be_removed(desk: Desk) -> None:
     desk.release(3, 0)
     desk.frames()
     assert desk.world.entities() == [] and desk.window.hand.entity is None
+
+
+@pytest.mark.parametrize("paused", [True, False])
+def test_a_body_in_the_hand_takes_typed_numbers(paused: bool) -> None:
+    """Its velocity took three acts: to select it, and its field, and the number."""
+    world = empty_world(gravity=(0, 0))
+    ball = circle(world, (0, 0), mass=1.0)
+    desk = Desk(world)
+    desk.window.pace.paused = paused
+    desk.press(0.1, 0)
+    desk.frames()
+    write(desk, "5 x")
+    tap(desk, "return")
+    assert "5 x is no speed" in desk.window.notice and desk.window.hand.entity in (ball,)
+    write(desk, "2 m/s, 90 deg, 3 kg")
+    assert desk.window.tool == "circle", "digits choose no tools meanwhile"
+    assert desk.world.component(ball, Mass).mass == 1.0
+    tap(desk, "return")
+    desk.release(0.1, 0)
+    desk.frames(3)
+    assert desk.world.component(ball, Mass).mass == 3.0 and desk.window.hand.entity not in (ball,)
+    assert tuple(desk.world.component(ball, Velocity).linear) == pytest.approx((0.0, 2.0), abs=1e-12)
+    assert desk.window.edits.history.entries[-1 if paused else -2].words.endswith("2 m/s, 90 deg, 3 kg")
+    desk.press(*desk.world.component(ball, Transform).position)
+    desk.frames()
+    write(desk, "-3 kg")
+    tap(desk, "return")
+    assert (
+        "must be a finite number > 0 kg" in desk.window.notice
+        and desk.world.component(ball, Mass).mass == 3.0
+    )
+
+
+def test_numbers_typed_to_a_fixed_body_or_given_up_change_nothing(desk: Desk) -> None:
+    ball, wall = circle(desk.world, (0, 0)), box(desk.world, (3, 0), static=True)
+    desk.window.pace.paused = True
+    desk.press(3, 0)
+    desk.frames()
+    write(desk, "3 m/s")
+    tap(desk, "return")
+    desk.release(3, 0)
+    desk.frames()
+    assert not desk.world.has(wall, Velocity) and "it is fixed" in desk.window.notice
+    desk.press(0, 0)
+    desk.frames()
+    write(desk, "3 m/s")
+    desk.release(0, 0)
+    desk.frames()
+    assert not desk.window.sketch.typed and not desk.world.component(ball, Velocity).linear
 
 
 def draw_spring(desk: Desk, start: tuple[float, float], end: tuple[float, float]) -> None:

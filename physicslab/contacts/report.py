@@ -84,12 +84,10 @@ def list_contacts(state: State) -> tuple[Contact, ...]:
 
 def contacts_of(state: State, entity: int) -> tuple[Contact, ...]:
     """Return every contact of one entity, in the order of entities."""
-    reported, near = _reported(state.contacts), state.contacts.manifolds
-    return tuple(
-        _describe(state, p)
-        for p in reported
-        if entity in (int(near[p]["entity_a"]), int(near[p]["entity_b"]))
-    )
+    reported = np.array(_reported(state.contacts), np.int64)
+    near = state.contacts.manifolds[reported]
+    of_it = (near["entity_a"] == entity) | (near["entity_b"] == entity)
+    return tuple(_describe(state, p) for p in reported[of_it].tolist())
 
 
 def contact_between(state: State, a: int, b: int) -> Contact | None:
@@ -181,7 +179,9 @@ def _reported(contacts: Contacts) -> list[int]:
     contacts.sync()
     near = contacts.manifolds[: contacts.recorded]
     reported = (near["count"] > 0) | (near["impact_count"] > 0)
-    return [p for p in ordered_records(contacts) if reported[p]]
+    order = np.array(ordered_records(contacts), np.int64)
+    shown: list[int] = order[reported[order]].tolist()
+    return shown
 
 
 def _describe(state: State, p: int) -> Contact:

@@ -175,7 +175,8 @@ function held(joint, points, draw) {
   for (const point of fixed) screw(point, 0.7);
 }
 
-const drawJoint = {
+const drawJoint = {  // a kind that is not among them as a rod
+  Gear() {},
   Rod(joint, now) {
     const points = ends(joint, now).map(onScreen), [[x, y], [u, v]] = points, unit = pixel(), colour = colours.rod;
     const up = (u < x ? -unit : unit) / (Math.hypot(u - x, v - y) || 1);  // the light comes from above
@@ -346,7 +347,7 @@ function drawWorld(frame, share) {
     for (const body of bodies) drawBody(body, now(body));
   }
   for (const spring of run.springs) drawSpring(spring, now);
-  for (const joint of run.joints) drawJoint[joint.kind]?.(joint, now);
+  for (const joint of run.joints) (drawJoint[joint.kind] ?? drawJoint.Rod)(joint, now);
   if (show.arrows) for (const body of movers) drawArrow(now(body));
   if (selected) {
     outline(selected, now(selected), 4);

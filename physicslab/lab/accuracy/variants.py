@@ -12,13 +12,14 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from physicslab.components import Shape
+from physicslab.components import Gear, Shape
 from physicslab.components.naming import name_by_kinds
 from physicslab.ecs.component import COMPONENTS
 from physicslab.ecs.config import SimulationConfig
 from physicslab.ecs.text import unique_name
 from physicslab.files.reader import read_scene
 from physicslab.integrators.dop853 import DOP853
+from physicslab.state.joint_rows import KINDS
 from physicslab.stepping.island import Part
 from physicslab.stepping.method import tolerance_for
 from physicslab.stepping.plan import StepPlan
@@ -36,12 +37,6 @@ _MIRRORED: dict[str, tuple[str, ...]] = {
     "Shape": ("vertices",),
     "Material": (),
     "Spring": ("anchor_a", "anchor_b"),
-    "Rod": ("anchor_a", "anchor_b"),
-    "Rope": ("anchor_a", "anchor_b"),
-    "Pin": ("anchor_a", "anchor_b", "lower", "upper", "motor_speed"),
-    "Slot": ("anchor_a", "anchor_b", "axis", "angle"),
-    "Weld": ("anchor_a", "anchor_b", "angle"),
-    "Pulley": ("anchor_a", "anchor_b", "wheel_a", "wheel_b"),
     "Thrust": ("force", "torque", "at"),
     "Charge": (),
     "Molecule": (),
@@ -51,6 +46,12 @@ _MIRRORED: dict[str, tuple[str, ...]] = {
     "Colour": (),
     "Layer": (),
     "MadeOf": (),
+} | {
+    kind.__name__: tuple(
+        spec.name for spec in kind.FIELDS if spec.kind == "vector" or spec.unit in ("rad", "rad/s")
+    )
+    for kind in KINDS
+    if kind is not Gear
 }
 """Fields that a mirror changes; a scene with another component is not mirrored."""
 _RIGID_BUDGET_S = 10.0

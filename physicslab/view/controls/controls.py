@@ -50,13 +50,16 @@ def walk(world: World, window: Window) -> None:
 
 
 def enter(world: World, window: Window) -> None:
-    """Go to the first field of the selection, or make the copies that are shown; else click with the tool.
+    """Go to the first field of the selection, or do what is typed or shown; else click with the tool.
 
     A tool that is dragged is pressed by one Enter and let go by the next. While a button is held to draw, as
     after typing numbers, Enter puts down the point of that drawing.
     """
     if window.sketch.held and not window.presses_by_key:
         _post(pygame.MOUSEBUTTONDOWN, _cursor(window), button=window.sketch.held)
+        return
+    if window.hand.entity is not None and window.sketch.typed:
+        tools.give_typed(world, window)
         return
     if window.copying is not None:
         copies.make_copies(world, window)

@@ -108,6 +108,29 @@ class Measure(NamedTuple):
         return self.words(*self.numbers(way))
 
 
+def motion_of(text: str) -> dict[str, float]:
+    """Return the speed [m/s], the direction [deg] and the mass [kg] that are typed of a body, in this order.
+
+    >>> motion_of("2; 30"), motion_of("500 g, 36 km/h")
+    ({'m/s': 2.0, 'deg': 30.0}, {'kg': 0.5, 'm/s': 10.0})
+
+    Raises
+    ------
+    InvalidText
+        If one of the numbers is none of these.
+    """
+    found: dict[str, float] = {}
+    for part in _BETWEEN.split(text.strip()):
+        for unit in ("m/s", "deg", "kg"):
+            with contextlib.suppress(InvalidText):
+                if unit not in found:
+                    found[unit] = evaluate(part, unit)
+                    break
+        else:
+            raise InvalidText("a speed, a direction, a mass: 2 m/s, 30 deg, 3 kg")
+    return found
+
+
 def _of_body(text: str, units: Sequence[str]) -> tuple[str, float] | None:
     """Return the property that a number is of by its unit; ``None`` for a size, or one half written."""
     for unit in (*units, *_OF_BODY):

@@ -44,6 +44,11 @@ class Tool:
     prompts: tuple[str, ...] = ()
 
     @property
+    def icon(self) -> str:
+        """Its icon; that of others behind one button where it has none of its own."""
+        return ICONS.get(self.name, ICONS["more"])
+
+    @property
     def cursor(self) -> int:
         """How the cursor looks with it, one of those of the system."""
         if self.pans:

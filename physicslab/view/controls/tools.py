@@ -1,16 +1,20 @@
 """Tools, the actions of the left mouse button in the world."""
 
+import math
 from collections.abc import Sequence
 
 import pygame
 
-from physicslab.components import Spring, Transform, Velocity
-from physicslab.history import Command, Group, Remove, RemoveComponent
+from physicslab.components import Mass, Spring, Transform, Velocity
+from physicslab.ecs.quantity_text import InvalidText
+from physicslab.ecs.vector import Vector2
+from physicslab.history import Command, Group, Remove, RemoveComponent, SetField
 from physicslab.languages.sentence import Sentence
 from physicslab.state.joint_rows import KINDS
 from physicslab.view.controls import drawing
 from physicslab.view.controls.drawing import Drawn
 from physicslab.view.controls.joining import JOINTS, SPRING
+from physicslab.view.controls.measure import motion_of
 from physicslab.view.controls.measuring import MEASURING_TOOLS, detached, take_instrument
 from physicslab.view.controls.picking import body_at, instrument_at, link_at, spring_at
 from physicslab.view.controls.spawning import BODIES, GROUPS
@@ -25,6 +29,32 @@ def let_go(world: World, window: Window) -> None:
     """Let go of what is held."""
     window.pins.release(window.edits)
     window.hand.release(world, window.target, window.now, window.pace.paused)
+
+
+def give_typed(world: World, window: Window) -> None:
+    """Let go of the body in the hand with the speed, direction and mass that were typed, as one edit."""
+    entity, typed, window.sketch.typed = window.hand.entity, window.sketch.typed, ""
+    if entity is None:
+        return
+    body = world.label(entity)
+    if not (world.has(entity, Velocity) and world.has(entity, Mass)):
+        window.notify(Sentence("{body} stays where it is: it is fixed", body=body))
+        return
+    try:
+        given = motion_of(typed)
+    except InvalidText:
+        words = "{body}: {typed} is no speed, direction or mass, as 2 m/s, 30 deg, 3 kg are"
+        window.notify(Sentence(words, body=body, typed=typed), 5.0, failed=True)
+        return
+    let_go(world, window)
+    edits: list[Command] = []
+    if "kg" in given:
+        edits.append(SetField(entity, Mass.__name__, "mass", given["kg"]))
+    if given.keys() & {"m/s", "deg"}:
+        speed = given.get("m/s", world.component(entity, Velocity).linear.magnitude)
+        way = Vector2.from_angle(math.radians(given.get("deg", 0.0)))
+        edits.append(SetField(entity, Velocity.__name__, "linear", way * speed))
+    window.edits.do(Group(f"{body}: {typed}", edits))
 
 
 def take_hold(world: World, window: Window) -> bool:

@@ -188,14 +188,15 @@ class WindowEvents:
             self._do(action, world)
 
     def _types(self, name: str, printed: str, held: str) -> bool:
-        """Take a key for the numbers of what is being drawn; return whether it is one of these."""
-        sketch = self._window.sketch
-        if not (sketch.grips and sketch.held) or "ctrl" in held:
+        """Take a key for the numbers of what is being drawn, or held; return whether it is one of these."""
+        sketch, lesson = self._window.sketch, self._window.lesson
+        holds = self._window.hand.entity is not None and lesson is None
+        if not (holds or (sketch.grips and sketch.held)) or "ctrl" in held:
             return False
         letter = {"backspace": "\b", "tab": "\t"}.get(name, printed)
         if not letter or (letter not in "\b\t" and not letter.isprintable()):
             return False
-        if not sketch.typed and not (letter.isdigit() or letter in ".-(\b\t"):
+        if not sketch.typed and not (letter.isdigit() or letter in ("-" if holds else ".-(\b\t")):
             return False  # a number begins so: other keys stay what they are
         sketch.write(letter)
         return True
@@ -264,6 +265,8 @@ class WindowEvents:
         follow_pointer(world, self._window)
         if event.button == pygame.BUTTON_LEFT:
             self._window.handles.release(self._window.edits)
+            if self._window.hand.entity is not None:
+                self._window.sketch.typed = ""
             let_instrument_go(world, self._window)
         if event.button == pygame.BUTTON_LEFT and self._tool is not None:
             self._tool.release(world, self._window)

@@ -2,12 +2,13 @@
 
 import math
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Gear, Pin, Pulley, Rod, Rope, Slot, Transform, Weld
-from physicslab.state.joint_rows import ends_of
+from physicslab.state.joint_rows import KINDS, ends_of
 from physicslab.theme import Theme
 from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.canvas import Canvas, Points
@@ -251,7 +252,9 @@ _PICTURES: dict[type, Callable[[World, Pen], None]] = {
     Gear: _draw_gears, Slot: _draw_slots, Weld: _draw_welds, Pulley: draw_pulleys, Rope: draw_ropes,
     Rod: draw_rods, Pin: _draw_pins,
 }  # fmt: skip
-"""The function that draws each kind of joint, the lowest first."""
+"""The function that draws each kind of joint, the lowest first; one without is drawn as a rod."""
+_LIKE_RODS = {kind: partial(draw_rods, kind=kind) for kind in KINDS if kind not in _PICTURES}
+_PICTURES |= _LIKE_RODS
 
 
 # ---- what is under the cursor ------------------------------------------------------------------------------
@@ -264,7 +267,7 @@ def joint_at(world: World, camera: Camera, pixel: tuple[float, float], *, lines:
     """
     best, found = math.inf, None
     for kind in _PICTURES:
-        if kind is Gear or not len(world.batch(kind)) or lines != (kind in (Rod, Rope)):
+        if kind is Gear or not len(world.batch(kind)) or lines != (kind in (Rod, Rope, *_LIKE_RODS)):
             continue
         start, end = line_ends(world, camera, kind)
         if kind is Pulley:

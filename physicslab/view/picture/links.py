@@ -44,9 +44,9 @@ def link_ends(world: World, kind: type) -> tuple[Points, Points, NDArray[np.bool
     return start, end, a == 0, b == 0
 
 
-def draw_rods(world: World, pen: Pen) -> None:
+def draw_rods(world: World, pen: Pen, kind: type = Rod) -> None:
     """Add a bar with an eye at each end, and a bracket where it is fixed to the world."""
-    at_a, at_b, *fixed = link_ends(world, Rod)
+    at_a, at_b, *fixed = link_ends(world, kind)
     start, end = pen.camera.project(at_a), pen.camera.project(at_b)
     colour = pen.theme.rod
     shine = aside(end - start) * pen.unit

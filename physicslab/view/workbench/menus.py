@@ -270,7 +270,7 @@ def build_palette(ui: Ui, rect: Rect, window: Window, *, names: bool) -> None:
         for tool in shown:
             ui.button(
                 tool.title, _tip(tool), actions.choose_tool, tool,
-                shown=_words(ui, tool) if names else ICONS[tool.name], on=window.tool == tool.name, size=size,
+                shown=_words(ui, tool) if names else tool.icon, on=window.tool == tool.name, size=size,
             )  # fmt: skip
             if window.tool != tool.name:
                 _colour_icon(ui, tool)
@@ -309,7 +309,7 @@ def _colour_icon(ui: Ui, tool: Tool) -> None:
         return
     low, high, text = imgui.get_item_rect_min(), imgui.get_item_rect_max(), imgui.get_text_line_height()
     place = ImVec2(low.x + imgui.get_style().frame_padding.x, 0.5 * (low.y + high.y - text))
-    imgui.get_window_draw_list().add_text(place, packed(colour), ICONS[tool.name])
+    imgui.get_window_draw_list().add_text(place, packed(colour), tool.icon)
 
 
 def _shown(room: int) -> list[Tool]:
@@ -323,4 +323,4 @@ def _tip(tool: Tool) -> str:
 
 
 def _words(ui: Ui, tool: Tool) -> str:
-    return f"{ICONS[tool.name]}  {ui.said(tool.title)}"
+    return f"{tool.icon}  {ui.said(tool.title)}"

@@ -141,6 +141,8 @@ class WorldView:
         if window.sketch.name or not words:
             drawn = TOOLS[window.sketch.name or tool.name].draws
             words = "" if drawn is None else drawing.reading(world, drawn, window)
+        if window.hand.entity is not None and window.sketch.typed:
+            words = f"{window.sketch.typed}_"
         if words and idle and state.dragged is None and state.writing is None:
             marks.draw_reading(words, window.pointer, on, window.framing.room())
 
