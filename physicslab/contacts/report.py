@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Shape, Transform, Velocity
+from physicslab.components import Transform, Velocity
 from physicslab.contacts.outlines import outlines_of
 from physicslab.ecs.vector import Vector2
 from physicslab.state.contacts import Contacts
-from physicslab.state.solid import is_any_apart, may_touch
+from physicslab.state.solid import is_any_apart, may_touch, solid_rows
 from physicslab.state.state import State
 
 
@@ -118,7 +118,7 @@ def count_near_pairs(state: State) -> int:
     The boxes around them overlap, each grown by a tenth of its body's size and the way of a step. This
     depends on the present motion alone: the pairs that the broad phase has listed depend on when it did so.
     """
-    rows, velocity = state.batch(Transform, Shape).rows, state.table(Velocity)
+    rows, velocity = solid_rows(state), state.table(Velocity)
     bodies, moves = outlines_of(state, rows), state.bodies.inverse_mass[rows] > 0.0
     speed = np.where(velocity.present[rows, None], np.abs(velocity["linear"][rows]), 0.0)
     reach = bodies.reach + _GROWN * bodies.size[:, None] + speed * state.simulation.dt
