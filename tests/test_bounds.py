@@ -11,10 +11,12 @@ from desk import empty_world
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from physicslab.components import Material, Shape, Transform, Velocity
+from physicslab.components import Layer, Material, Medium, Shape, Transform, Velocity
 from physicslab.contacts.outlines import outlines_of, overlap
+from physicslab.contacts.report import count_near_pairs
 from physicslab.diagnostics.energy import measure_account, measure_energy
 from physicslab.ecs.config import SimulationConfig
+from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import load_scene
 from physicslab.prefabs import box, circle
 from physicslab.world import World
@@ -151,6 +153,22 @@ def test_where_nothing_is_outside_nothing_is_brought_back() -> None:
     world = load_scene("sandbox")
     world.run(seconds=3.0)
     assert world.returned_inside == 0 and measure_account(world).energy["overlap"] == 0.0
+
+
+@pytest.mark.parametrize("kept_apart", ["medium", "layer"])
+def test_a_body_is_not_put_out_of_a_shape_that_it_does_not_touch(kept_apart: str) -> None:
+    world = room(gravity_mode="none")
+    around = box(world, (3.0, 1.8), width=9.0, height=4.6, static=True)
+    body = box(world, (6.05, -0.15), width=0.5, height=0.5)  # held between the floor and the wall
+    if kept_apart == "medium":
+        world.add(around, Medium(density=1.0))
+        assert count_near_pairs(world) == 4  # with two walls, the floor and the pillar
+    else:
+        world.add(around, Layer(1, "own"))
+        world.add(body, Layer(2, "own"))
+    world.run(steps=20)
+    assert world.returned_inside == 1
+    assert (world.component(body, Transform).position - Vector2(6.05, -0.15)).magnitude < 2.0
 
 
 def test_a_body_larger_than_the_world_stays_where_it_is() -> None:

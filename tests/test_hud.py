@@ -226,6 +226,17 @@ def test_figures_are_not_read_in_the_frame_that_shows_them(monkeypatch: pytest.M
     assert len(read) >= 4 and len(shown) >= 4 and not read & shown
 
 
+def test_panels_of_a_selected_body_are_built_five_times_a_second_while_time_runs() -> None:
+    """Its forces are measured as often, and each time panels were built three times over."""
+    desk, _ = recorded(load_scene("drop"))
+    desk.window.selection.take(desk.world.entity("ball"))
+    desk.frames(30)
+    built, measured = desk.sandbox.interface.toolkit.built, desk.window.measured.number
+    desk.frames(60)
+    assert desk.window.measured.number >= measured + 4
+    assert 4 <= desk.sandbox.interface.toolkit.built - built <= 6
+
+
 def test_numbers_are_read_five_times_a_second_and_not_more_often() -> None:
     world = empty_world()
     circle(world, (0, 50))

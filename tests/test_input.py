@@ -26,6 +26,17 @@ def test_spawned_bodies_vary(desk: Desk) -> None:
     assert len({shape.width for shape in shapes if shape.kind == "box"}) > 2
 
 
+def test_no_ghost_is_drawn_before_the_mouse_has_moved_over_the_window(desk: Desk) -> None:
+    """A window that opened under the mouse showed the next circle in the middle of its scene."""
+    pygame.event.post(pygame.Event(pygame.WINDOWENTER))
+    desk.move(0.0, 0.0)
+    desk.frames()
+    assert not desk.window.has_pointed
+    desk.move(0.1, 0.0)
+    desk.frames()
+    assert desk.window.has_pointed
+
+
 def test_drag_works_while_paused(desk: Desk) -> None:
     ball = circle(desk.world, (0, 0))
     desk.key("space")

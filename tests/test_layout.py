@@ -103,6 +103,11 @@ def test_a_notice_covers_no_moving_body(x: float, aside: bool, monkeypatch: pyte
     place = desk.window.camera.to_screen(desk.world.component(body, Transform).position)
     assert not pause.inflate(20, 20).collidepoint(place)
     assert (abs(pause.centerx - (left + width // 2)) > 20) == aside
+    desk.window.camera.pan(-desk.window.camera.scale * x, 0.0)
+    desk.frames(SETTLED)
+    (pause,) = drawn[-1]
+    place = desk.window.camera.to_screen(desk.world.component(body, Transform).position)
+    assert not pause.inflate(20, 20).collidepoint(place), "nor where the view has moved"
 
 
 def test_no_banner_lies_behind_a_meter(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -3,6 +3,7 @@
 import math
 from dataclasses import replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from physicslab import load_scene
-from physicslab.components import Drag, Held, Mass, Shape, Spring, Transform, Velocity
+from physicslab.components import Charge, Drag, Held, Mass, Molecule, Shape, Spring, Transform, Velocity
 from physicslab.diagnostics.energy import measure_account, measure_energy, measure_momentum
 from physicslab.ecs.config import PhysicsConfig
 from physicslab.ecs.vector import Vector2
@@ -188,6 +189,19 @@ def test_planets_on_springs_beside_contacts_are_all_followed() -> None:
     world.run(seconds=2.0)
     assert world.bodies.sub_integrated[1:4].all()
     assert measure_energy(world).total == pytest.approx(before, rel=1e-9)
+
+
+@pytest.mark.parametrize("part", [Molecule(depth=1.0, distance=0.4), Charge(0.1)])
+def test_what_is_no_molecule_and_has_no_charge_is_not_followed_with_those(part: Any) -> None:
+    world = far_floor(open_space(gravity=None))
+    world.physics = replace(world.physics, coulomb_constant=1.0)
+    bodies = [circle(world, (0.5 * n, 0.0), radius=0.1) for n in range(4)]
+    for body in bodies[:2]:
+        world.add(body, type(part)(**{spec.name: getattr(part, spec.name) for spec in part.FIELDS}))
+    world.add(bodies[0], Drag(linear=0.1))
+    world.synchronise()
+    rows = [world.entity_index.row_of[body] for body in bodies]
+    assert world.bodies.sub_integrated[rows].tolist() == [True, True, False, False]
 
 
 def test_the_same_scene_gives_the_same_bits() -> None:

@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Shape, Transform, Velocity
+from physicslab.components import Transform, Velocity
 from physicslab.contacts.outlines import outlines_of
 from physicslab.ecs.vector import Vector2
 from physicslab.state.contacts import Contacts
-from physicslab.state.solid import is_any_apart, may_touch
+from physicslab.state.solid import is_any_apart, may_touch, solid_rows
 from physicslab.state.state import State
 
 
@@ -84,12 +84,10 @@ def list_contacts(state: State) -> tuple[Contact, ...]:
 
 def contacts_of(state: State, entity: int) -> tuple[Contact, ...]:
     """Return every contact of one entity, in the order of entities."""
-    reported, near = _reported(state.contacts), state.contacts.manifolds
-    return tuple(
-        _describe(state, p)
-        for p in reported
-        if entity in (int(near[p]["entity_a"]), int(near[p]["entity_b"]))
-    )
+    reported = np.array(_reported(state.contacts), np.int64)
+    near = state.contacts.manifolds[reported]
+    of_it = (near["entity_a"] == entity) | (near["entity_b"] == entity)
+    return tuple(_describe(state, p) for p in reported[of_it].tolist())
 
 
 def contact_between(state: State, a: int, b: int) -> Contact | None:
@@ -120,7 +118,7 @@ def count_near_pairs(state: State) -> int:
     The boxes around them overlap, each grown by a tenth of its body's size and the way of a step. This
     depends on the present motion alone: the pairs that the broad phase has listed depend on when it did so.
     """
-    rows, velocity = state.batch(Transform, Shape).rows, state.table(Velocity)
+    rows, velocity = solid_rows(state), state.table(Velocity)
     bodies, moves = outlines_of(state, rows), state.bodies.inverse_mass[rows] > 0.0
     speed = np.where(velocity.present[rows, None], np.abs(velocity["linear"][rows]), 0.0)
     reach = bodies.reach + _GROWN * bodies.size[:, None] + speed * state.simulation.dt
@@ -181,7 +179,9 @@ def _reported(contacts: Contacts) -> list[int]:
     contacts.sync()
     near = contacts.manifolds[: contacts.recorded]
     reported = (near["count"] > 0) | (near["impact_count"] > 0)
-    return [p for p in ordered_records(contacts) if reported[p]]
+    order = np.array(ordered_records(contacts), np.int64)
+    shown: list[int] = order[reported[order]].tolist()
+    return shown
 
 
 def _describe(state: State, p: int) -> Contact:

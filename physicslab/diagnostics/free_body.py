@@ -146,8 +146,10 @@ class LastStep:
         return (self.change - self.struck) / self.dt
 
 
-def last_step(world: World, entity: int) -> LastStep | None:
+def last_step(world: World, entity: int, present: tuple[NamedForce, ...] | None = None) -> LastStep | None:
     """Return the changes of the momentum of a body in the last step; ``None`` if they are not known.
+
+    ``present`` are the forces on it as they are now, where they are known already.
 
     It is not of what cannot move, after a longer run than one step, after an edit, and after going to another
     place of the history. Impacts are those of the world's log (``contacts.read``).
@@ -155,7 +157,7 @@ def last_step(world: World, entity: int) -> LastStep | None:
     checkpoint, dt = world.checkpoint, world.time - world.checkpoint.time
     if not (world.forces_known and 0.0 < dt <= _LONGEST * world.simulation.dt):
         return None
-    present = forces_on(world, entity)
+    present = forces_on(world, entity) if present is None else present
     row = world.entity_index.row_of[entity]
     inverse = float(world.bodies.inverse_mass[row])
     if inverse == 0.0:

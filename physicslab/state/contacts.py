@@ -97,7 +97,9 @@ class Contacts:
         "How many impacts obeyed Stronge's law, as Newton's would have made energy.",
         of_pairs=False,
     )
-    outside = _count(near_counts.OUTSIDE, "Whether a body was beyond the bounds in the step at hand.")
+    outside = _count(
+        near_counts.OUTSIDE, "Whether a body was beyond the bounds, or wedged, in the step at hand."
+    )
     unordered = _count(
         near_counts.UNORDERED, "Whether scalar pairs were added since those were last put in order."
     )

@@ -13,11 +13,13 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Shape, Transform, Velocity
+from physicslab.components import Transform, Velocity
 from physicslab.contacts.islands import wake_neighbours
 from physicslab.contacts.outlines import Numbers, Outlines, exits, outlines_of, overlap, overlapping
 from physicslab.kernels.accounts import OVERLAP
+from physicslab.kernels.near_counts import WEDGED
 from physicslab.kernels.solver.separate import BEYOND, DEEP, ROUNDING
+from physicslab.state.solid import is_any_apart, may_touch, solid_rows
 from physicslab.state.state import State
 from physicslab.stepping.accounting import balance_of
 from physicslab.systems.schedule import Schedule
@@ -28,6 +30,8 @@ _HELD = 0.01
 """Overlap with it, as a share of a size, above which that body does push."""
 _WITHIN = DEEP + ROUNDING
 """Overlap with a fixed body, as a share of a size, that is more than contacts leave: it is inside."""
+_PRESSED = 0.5 * BEYOND
+"""Overlap with the bounds, as a share of a size, by which a body may be beyond them."""
 _FREE = 1e-6
 """Overlap, as a share of a size, that is none."""
 _ALIKE = 0.1
@@ -50,25 +54,56 @@ def return_inside(state: State, schedule: Schedule) -> int:
     schedule : Schedule
         The forces, whose energy this changes.
     """
-    state.contacts.outside = 0
-    bounds = state.physics.bounds
-    rooms = (-math.inf, -math.inf, math.inf, math.inf) if bounds is None else bounds
-    low, high = np.array(rooms[:2]), np.array(rooms[2:])
-    rows = state.batch(Transform, Shape).rows
-    inverse_mass, moves = state.bodies.inverse_mass[rows], state.table(Velocity).present[rows]
-    movable, shapes = rows[inverse_mass > 0.0], outlines_of(state, rows[~moves])
-    bodies = outlines_of(state, movable)
+    noted, state.contacts.outside = state.contacts.outside, 0
+    solid, velocity = solid_rows(state), state.table(Velocity)
+    fixed, movable = solid[~velocity.present[solid]], solid[state.bodies.inverse_mass[solid] > 0.0]
+    if not len(fixed):
+        return 0
+    low, high = _room(state)
+    holding = fixed if noted & WEDGED else fixed[:0]
+    movable = movable[_may_be_kept(state, movable, holding)]
+    bodies, places = outlines_of(state, movable), dict[int, Numbers]()
     beyond = _beyond(bodies, low, high) > BEYOND * bodies.size[:, None]
-    places: dict[int, Numbers] = {}
-    for n in np.flatnonzero(beyond.any(axis=1) | _may_be_within(bodies, shapes)):
-        if _is_kept(bodies, int(n), shapes, _INWARDS[beyond[n]]):
-            place = _free_place(bodies, int(n), shapes, low, high)
+    kept = beyond.any(axis=1)
+    if len(holding):
+        kept |= _may_be_within(bodies, outlines_of(state, holding))
+    for n in np.flatnonzero(kept).tolist():
+        near = fixed[_are_near(state, int(movable[n]), fixed)]
+        if len(near) and _is_kept(bodies, n, outlines_of(state, near), _INWARDS[beyond[n]]):
+            touched = fixed[may_touch(state, np.full(len(fixed), movable[n]), fixed)]
+            place = _free_place(bodies, n, outlines_of(state, touched), low, high)
             if place is not None:
-                places[int(n)] = place
+                places[n] = place
     if places:
         numbers = np.array(list(places))
         _put(state, schedule, movable[numbers], np.array(list(places.values())), beyond[numbers])
     return len(places)
+
+
+def _room(state: State) -> tuple[Numbers, Numbers]:
+    """Return the lowest and the highest x and y within the bounds (2,) [m]."""
+    bounds = state.physics.bounds or (-math.inf, -math.inf, math.inf, math.inf)
+    return np.array(bounds[:2]), np.array(bounds[2:])
+
+
+def _may_be_kept(state: State, rows: NDArray[np.int64], fixed: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """Return which bodies (n,) are pressed into the bounds, or may be in fixed ones (by circles)."""
+    contacts = state.contacts
+    pairs = contacts.manifolds[: contacts.recorded]
+    with_wall = np.flatnonzero((pairs["wall"] >= 0) & (pairs["count"] > 0))
+    depth = -contacts.points["separation"].reshape(-1, 2)[with_wall].min(axis=1)
+    found = np.isin(rows, pairs["b"][with_wall[depth > _PRESSED * pairs["size"][with_wall]]])
+    for row in fixed.tolist():
+        found |= _are_near(state, row, rows)
+    return found
+
+
+def _are_near(state: State, row: int, rows: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """Return which of some shapes (n,) may overlap and touch that of a row, by the circles around them."""
+    place, reach = state.table(Transform)["position"], state.bodies.shapes.reach
+    distance = np.abs(place[rows] - place[row])
+    near: NDArray[np.bool_] = (distance < (reach[rows] + reach[row])[:, None]).all(axis=1)
+    return near & may_touch(state, np.full(len(rows), row), rows) if is_any_apart(state) else near
 
 
 def _beyond(bodies: Outlines, low: Numbers, high: Numbers) -> Numbers:

@@ -41,7 +41,7 @@ def sub_integrated_rows(state: State, forces: Sequence[ForceSystem]) -> NDArray[
 
     So does a force in Python that states that it depends on velocities.
 
-    Where another force couples any body with any, all are.
+    Where a force couples any of some bodies with any, all of these are, as soon as one body is.
     """
     rows = np.zeros(len(state.entity_index), np.bool_)
     for force in forces:
@@ -52,8 +52,9 @@ def sub_integrated_rows(state: State, forces: Sequence[ForceSystem]) -> NDArray[
             rows |= rates > 0.0
             if pairs is not None:
                 rows[pairs.ravel()] = True
-    if rows.any() and any(force.couples(state) is None for force in forces):
-        rows[:] = True
+    for force in forces:
+        if rows.any() and force.couples(state) is None:
+            rows[force.coupled_rows(state)] = True
     return rows & state.table(Transform).present
 
 

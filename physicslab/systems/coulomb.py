@@ -54,6 +54,10 @@ class CoulombSystem(ForceSystem):
         """Return the forces of all pairs for compiled integrators."""
         return self._law(state).packed(state, layout, FIELDS)
 
+    def coupled_rows(self, state: State) -> NDArray[np.int64]:
+        """Return the rows (n,) of those that act."""
+        return self._acting
+
     def needs_origin(self, state: State) -> bool:
         """Only the force of charges that stay where they are depends on it."""
         return bool((state.bodies.inverse_mass[self._acting] == 0.0).any())

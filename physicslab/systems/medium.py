@@ -90,9 +90,9 @@ class MediumSystem(ForceSystem):
         turned = np.stack([rotated(corners[:, k], angle) for k in range(8)], axis=1)
         radius = outlines[:, 1]
         level = (turned @ gravity).min(axis=1) - radius * np.hypot(*gravity) + position @ gravity
-        reach = np.hypot(corners[..., 0], corners[..., 1]).max(axis=1) + radius
+        half = np.abs(turned).max(axis=1) + radius[:, None]
         numbers = (
-            position, angle, reach, table["density"][rows], table["viscosity"][rows],
+            position, angle, half, table["density"][rows], table["viscosity"][rows],
             table["quadratic"][rows], table["flow"][rows], level,
         )  # fmt: skip
         found[:, :NUMBERS], found[:, NUMBERS:] = np.column_stack(numbers), outlines

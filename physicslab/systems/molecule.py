@@ -53,6 +53,10 @@ class MoleculeSystem(ForceSystem):
             molecules, parameters, indices, work_slots=work_slots, cause=FIELDS, anchors=anchors
         )  # fmt: skip
 
+    def coupled_rows(self, state: State) -> NDArray[np.int64]:
+        """Return the rows (n,) of those that act."""
+        return self._acting
+
     def rates(self, state: State) -> NDArray[np.float64]:
         """Return for each row how fast it bounces where its speed brings it near another like it [rad/s]."""
         table, rows, rates = state.table(Molecule), self._acting, np.zeros(len(state.entity_index))

@@ -288,8 +288,15 @@ class ForceSystem(System):
         return b"".join(state.table(kind)[name][rows].tobytes() for kind, name in self.columns)
 
     def couples(self, state: State) -> NDArray[np.int64] | None:
-        """Return the pairs of rows (n, 2) whose motions the force couples; ``None``: any with any."""
+        """Return the pairs of rows (n, 2) whose motions the force couples.
+
+        ``None`` stands for any of :meth:`coupled_rows` with any.
+        """
         return np.zeros((0, 2), np.int64) if self.couples_nothing else None
+
+    def coupled_rows(self, state: State) -> NDArray[np.int64]:
+        """Return the rows (n,) of which it couples any with any, if it does; all, unless it says fewer."""
+        return np.arange(len(state.entity_index))
 
     def turned(self, state: State) -> NDArray[np.int64]:
         """Return the rows of the bodies that a compiled force turns: their angles are then followed.
@@ -301,7 +308,8 @@ class ForceSystem(System):
     def packed(self, state: State, layout: StateLayout) -> PackedForce | None:
         """Return the force as compiled integrators call it, with the numbers of the scene as they are now.
 
-        A row whose ``layout.place`` is -1 takes no part; there is none where :meth:`couples` is ``None``.
+        A row whose ``layout.place`` is -1 takes no part; where :meth:`couples` is ``None``, none of
+        :meth:`coupled_rows` has that.
         Where that of its angle, ``layout.turn``, is -1, no force turns it.
         ``None`` where there is no such kernel: the method at ``Stage.FORCE`` is called instead, from Python.
         """

@@ -241,8 +241,9 @@ def immerse(
         _walk(outlines, b, outlines, a, outlines, cuts, outlines, to, psi, gx, gy, same, False, False)
 
 
-X, Y, ANGLE, REACH, DENSITY, VISCOSITY, QUADRATIC, FLOW_X, FLOW_Y, LEVEL, NUMBERS = range(11)
-"""The numbers of a medium, before its outline: where it is, its size, what it is, g . x at its surface."""
+X, Y, ANGLE, HALF_X, HALF_Y, DENSITY, VISCOSITY, QUADRATIC, FLOW_X, FLOW_Y, LEVEL, NUMBERS = range(12)
+"""The numbers of a medium, before its outline: where it is, half of the width and height of what it takes up,
+what it is, and g . x at its surface."""
 STORED, GX, GY, FIRST = range(4)
 """The parameters of :func:`medium` begin with the energy that it has found, and the gravity."""
 ROOM = 2 * OUTLINE + CUTS + SUMS
@@ -276,8 +277,8 @@ def medium(q, v, span, force, parameters, indices):  # type: ignore[no-untyped-d
         placed = False
         for m in range(media):
             at = FIRST + m * (NUMBERS + OUTLINE)
-            dx, dy, far = parameters[at + X] - x, parameters[at + Y] - y, reach + parameters[at + REACH]
-            if not dx * dx + dy * dy < far * far:
+            dx, dy = parameters[at + X] - x, parameters[at + Y] - y
+            if not (abs(dx) < reach + parameters[at + HALF_X] and abs(dy) < reach + parameters[at + HALF_Y]):
                 continue
             place_outline(parameters, at + NUMBERS, dx, dy, parameters[at + ANGLE], parameters, region)
             away, _, _ = signed_distance(parameters, region, 0.0, 0.0)

@@ -7,7 +7,7 @@ from physicslab.kernels import wide_layout as L
 from physicslab.kernels.accounts import ANGULAR_MOMENTUM, ENERGY, OVERLAP
 from physicslab.kernels.arguments import Acting, Contacts, Motion, Near
 from physicslab.kernels.float64x8 import lesser, mask_bits, take
-from physicslab.kernels.near_counts import DISC_BLOCKS, OUTSIDE
+from physicslab.kernels.near_counts import BEYOND_BOUNDS, DISC_BLOCKS, OUTSIDE, WEDGED
 from physicslab.kernels.records import Manifold, Points
 
 DEEP = 0.1
@@ -52,7 +52,7 @@ def any_deep(contacts: Contacts, near: Near) -> bool:
         if lowest < -(DEEP + ROUNDING) * manifold.size:
             any_deep = True
         if manifold.wall >= 0 and manifold.swept != 1 and lowest < -BEYOND * manifold.size:
-            near.counts[OUTSIDE] = 1
+            near.counts[OUTSIDE] |= BEYOND_BOUNDS
     if any_deep:
         return True
     for slots in (near.discs, near.boxes):
@@ -139,7 +139,7 @@ def _move_wide(near: Near, position: Vectors, before: Vectors, inverse_mass: Num
                     continue
                 at = k * L.rows_of(slots.kind) + place
                 if slots.a[k * L.WIDE + place] == 0:  # the world itself: a wall
-                    near.counts[OUTSIDE] = 1
+                    near.counts[OUTSIDE] |= BEYOND_BOUNDS
                 lowest = data[at + L.ONE + L.SEPARATION]
                 if slots.kind != L.DISC:
                     lowest = min(lowest, data[at + L.TWO + L.SEPARATION])
@@ -194,5 +194,5 @@ def separate(
         wedged |= _move_wide(near, position, before, inverse_mass, True)
         sweep += 1
     if wedged:
-        near.counts[OUTSIDE] = 1
+        near.counts[OUTSIDE] |= WEDGED
     _book(near, motion, before, inverse_mass, acting)

@@ -70,6 +70,7 @@ class WindowEvents:
         self._right: float | None = None  # when the right button went down, until it draws or is let go [s]
         self._elapsed = 0.0  # since the last frame [s]
         self._cursor = pygame.SYSTEM_CURSOR_ARROW
+        self._entered = False  # whether the pointer has not moved since it is over the window
         self._came_back = -_COMING_BACK  # when another window was left for this one [s]
         self._handlers: dict[int, Callable[[World, pygame.Event], object]] = {
             pygame.KEYDOWN: self._key,
@@ -110,7 +111,11 @@ class WindowEvents:
         elif handler is not None:
             handler(world, event)
         if event.type == pygame.MOUSEMOTION:
-            window.pointer_on_panel, window.has_pointed = taken, True
+            window.pointer_on_panel = taken
+            # A window that opens under a mouse at rest is told where that is; nothing is to be made there.
+            window.has_pointed |= not (self._entered and event.rel == (0, 0))
+            self._entered = False
+        self._entered |= event.type == pygame.WINDOWENTER
 
     @property
     def waits(self) -> bool:

@@ -96,7 +96,7 @@ class Measured:
             return
         self._of, self._steps, self._until = of, world.steps, now + _PERIOD
         self.forces = free_body.forces_on(world, entity)
-        self.step = free_body.last_step(world, entity)
+        self.step = free_body.last_step(world, entity, self.forces)
         self._place = world.component(entity, Transform).position
         self.number += 1
 

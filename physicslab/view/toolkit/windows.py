@@ -3,12 +3,13 @@
 import re
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import lru_cache
 from typing import NamedTuple
 
 import pygame
 from imgui_bundle import ImVec2, imgui
 
-from physicslab.languages.language import language
+from physicslab.languages.language import Language, language
 from physicslab.theme import Theme
 from physicslab.view.canvas.canvas import Rect
 from physicslab.view.canvas.drawable_text import drawable
@@ -59,6 +60,15 @@ def widget_label(words: str, identity: str) -> str:
     """
     shown = re.sub("#(?=#)", f"#{_UNSEEN}", drawable(words))
     return f"{shown}###{ascii(identity)[1:-1].replace('#', '|23')}"
+
+
+_KEPT = 4096
+"""How many texts are kept as they are drawn: a panel writes the same ones a few times a second."""
+
+
+@lru_cache(_KEPT)
+def _said(own: Language, words: str) -> str:
+    return drawable(own.reword(words))
 
 
 class Spoken(NamedTuple):
@@ -144,7 +154,7 @@ class Windows:
 
     def said(self, words: str) -> str:
         """Return words in the language of the window, as they can be drawn."""
-        return drawable(self.language.reword(words))
+        return _said(self.language, words) if type(words) is str else drawable(self.language.reword(words))
 
     def written(self, words: str) -> str:
         """Return words as :meth:`said` does, and note that they are written."""

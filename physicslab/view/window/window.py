@@ -127,6 +127,8 @@ class Window:
         The tool of the left mouse button: a name of :mod:`physicslab.view.controls.tools`.
     level : str
         How much is shown: one of :data:`physicslab.view.window.desk.LEVELS`.
+    scales : dict of str to float
+        How large quantities of the world are, by unit: what is far smaller is rounding.
     text_scale : float
         How much larger than usual text is.
     arrangements : dict of str to str
@@ -224,6 +226,7 @@ class Window:
         self.tool = "circle"
         self.level = "Explore"
         self.text_scale = 1.0
+        self.scales: dict[str, float] = {}
         self.arrangements = {"wide": "", "narrow": ""}
         self.keys, self.keys_go_to = KeyChoice(), ""
         self.points_by_key = self.presses_by_key = False

@@ -11,7 +11,6 @@ from imgui_bundle import imgui
 from numpy.typing import NDArray
 
 from physicslab.components import Drag, Mass, Material, Shape, Spring, Trail, Transform, Velocity
-from physicslab.diagnostics.scales import scales_of
 from physicslab.ecs.component import Component
 from physicslab.ecs.fields import LENGTH_LIMIT, Field
 from physicslab.ecs.quantity_text import points_text
@@ -71,7 +70,7 @@ class ComponentRows:
         first, columns = world.component(chosen[0], kind), world.table(kind)
         picked = world.entity_index.rows_of(np.array(chosen, np.int64))
         rows = [spec for spec in kind.FIELDS if kind is not Shape or self._is_of_all(spec, picked)]
-        scales = scales_of(world) if kind in (Transform, Velocity) else {}
+        scales = window.scales if kind in (Transform, Velocity) else {}
         if window.level == "Explore":
             rows = [spec for spec in rows if spec.name not in _LESSER]
         if rows:
@@ -260,7 +259,7 @@ class ComponentRows:
     def build_throw(self, body: int) -> None:
         """Build speed and direction of a body."""
         velocity = self.world.component(body, Velocity).linear
-        speed = without_rounding(velocity.magnitude, scales_of(self.world)["m/s"])
+        speed = without_rounding(velocity.magnitude, self.window.scales["m/s"])
         degrees = without_rounding(math.degrees(velocity.angle), 360.0) if speed else 0.0
 
         def commit(speed: float, degrees: float) -> None:

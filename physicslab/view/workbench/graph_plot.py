@@ -8,7 +8,6 @@ from imgui_bundle import ImVec2, imgui, implot
 from numpy.typing import NDArray
 
 from physicslab.components.quantities import KIND_OF_UNIT, QUANTITIES
-from physicslab.diagnostics.scales import scales_of
 from physicslab.theme import Colour
 from physicslab.view.canvas.quantities import ROUNDING, written_unit
 from physicslab.view.controls import dashboard_actions
@@ -57,7 +56,7 @@ class GraphPlot:
         implot.get_input_map().fit = -1  # a double click goes to the moment
         if not implot.begin_plot(f"##plot {graph.entity}", ImVec2(-1.0, height), flags):
             return None
-        axis_of = self._set_up_axes(ui, world, graph, window, height - _BELOW * ui.size, follows=follows)
+        axis_of = self._set_up_axes(ui, graph, window, height - _BELOW * ui.size, follows=follows)
         self._draw_lines(ui, world, graph, window, axis_of)
         self._draw_moments(ui, world, window, graph, axis_of)
         hovered = self._follow_mouse(window, graph)
@@ -68,26 +67,26 @@ class GraphPlot:
     # ---- axes ----------------------------------------------------------------------------------------------
 
     def _set_up_axes(
-        self, ui: Ui, world: World, graph: GraphShown, window: Window, height: float, *, follows: bool
+        self, ui: Ui, graph: GraphShown, window: Window, height: float, *, follows: bool
     ) -> dict[Key, implot.ImAxis_]:
         """Set up an axis for each unit, three at most; return which axis each line has."""
         across = ui.said("time [s]") if graph.across is None else _heading(ui, [graph.across])
         if graph.across is None and height < _LABELLED * ui.size:
             across = ""  # the moment is written beside the plot, with its unit
         keys = [line.key for line in graph.lines]
-        self._set_up(ui, world, implot.ImAxis_.x1, across, graph, window, keys, follows=follows)
+        self._set_up(ui, implot.ImAxis_.x1, across, graph, window, keys, follows=follows)
         units = list(dict.fromkeys(QUANTITIES[key[1]].unit for key in keys))
         axis_of: dict[Key, implot.ImAxis_] = {}
         for n, axis in enumerate(_AXES[: max(len(units), 1)]):
             own = units[n:] if n == len(_AXES) - 1 else units[n : n + 1]
             mine = [key for key in keys if QUANTITIES[key[1]].unit in own]
-            self._set_up(ui, world, axis, _heading(ui, mine, height), graph, window, mine, follows=follows)
+            self._set_up(ui, axis, _heading(ui, mine, height), graph, window, mine, follows=follows)
             axis_of |= dict.fromkeys(mine, axis)
         ui.words += finish_axes(ui.language)
         return axis_of
 
     def _set_up(
-        self, ui: Ui, world: World, axis: implot.ImAxis_, label: str, graph: GraphShown, window: Window,
+        self, ui: Ui, axis: implot.ImAxis_, label: str, graph: GraphShown, window: Window,
         keys: list[Key], *, follows: bool,
     ) -> None:  # fmt: skip
         """Set up one axis; while it follows what is recorded it shows all of that."""
@@ -97,13 +96,13 @@ class GraphPlot:
         implot.setup_axis(axis, label, flags)
         ui.words.append(label)
         if follows:
-            low, high = self._range(world, axis, graph, window, keys)
+            low, high = self._range(axis, graph, window, keys)
             if axis == implot.ImAxis_.x1 and graph.across is None:
                 low, high = window.dashboard.fitting.spans.get(graph.entity, (low, high))
             implot.setup_axis_limits(axis, low, high, implot.Cond_.always)
 
     def _range(
-        self, world: World, axis: implot.ImAxis_, graph: GraphShown, window: Window, keys: list[Key]
+        self, axis: implot.ImAxis_, graph: GraphShown, window: Window, keys: list[Key]
     ) -> tuple[float, float]:
         """Return what an axis is to show of this run and of the one before."""
         records = window.dashboard.record, window.dashboard.before
@@ -117,8 +116,7 @@ class GraphPlot:
             found = range_to_show([one for one in times if len(one)], room=0.0)
         else:
             shown = [graph.across] if is_across and graph.across is not None else keys
-            scales = scales_of(world)
-            sizes = [scale_of(key, scales) for key in shown]
+            sizes = [scale_of(key, window.scales) for key in shown]
             none = ROUNDING * max((size for size in sizes if math.isfinite(size)), default=0.0)
             found = range_to_show([record.values(key) for record in records for key in shown], none=none)
         self._ranges[axis] = state, found

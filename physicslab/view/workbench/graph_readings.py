@@ -15,7 +15,6 @@ from physicslab.components.quantities import (
     WORLD_QUANTITIES,
 )
 from physicslab.diagnostics.quantities import why_undefined
-from physicslab.diagnostics.scales import scales_of
 from physicslab.languages.sentence import Sentence
 from physicslab.state.joint_rows import KINDS
 from physicslab.theme import Colour, Theme, mixed
@@ -164,7 +163,7 @@ def build_readings(ui: Ui, world: World, window: Window, graph: GraphShown) -> N
         return
     spans = _fits(window, graph) or _spans(window, graph)
     style = imgui.get_style()
-    used, room, scales = 0.0, imgui.get_content_region_avail().x, scales_of(world)
+    used, room, scales = 0.0, imgui.get_content_region_avail().x, window.scales
     for colour, key in _entries(ui, world, graph):
         name = line_name(graph, key, window)
         if spans is not None:
@@ -225,13 +224,14 @@ def _entry(ui: Ui, colour: Colour | None, name: str, value: str, *, wrapped: boo
 
 def _value(world: World, window: Window, key: Key, row: int | None, scales: dict[str, float]) -> str:
     """Return a value in words, or the reason why it is missing."""
-    value = np.nan if row is None else float(window.dashboard.record.values(key)[row])
-    why = why_undefined(world, key[1], key[0])
+    record = window.dashboard.record
+    value = np.nan if row is None else float(record.values(key)[row])
     if np.isnan(value):
+        why = why_undefined(world, key[1], key[0])
         return f"({why})" if why else "not recorded"
-    value = without_rounding(value, scale_of(key, scales))
-    words, record = quantity(value, unit_of(key)), window.dashboard.record
-    return f"{words} (gone)" if why == "gone" and world.time >= record.times[-1] else words
+    words = quantity(without_rounding(value, scale_of(key, scales)), unit_of(key))
+    is_gone = key[0] is not None and key[0] not in world.entity_index.row_of
+    return f"{words} (gone)" if is_gone and world.time >= record.times[-1] else words
 
 
 def build_cursors(ui: Ui, window: Window, graph: GraphShown) -> None:

@@ -95,6 +95,7 @@ class Hud:
 
     def _read_figures(self, world: World, elapsed: float) -> None:
         self._figures = figures.WorldFigures(world, self._watch, self._meter.frame_rate)
+        self._window.scales = self._figures.scales
         self._measures = (
             figures.measure_lines(world, self._figures) if self._window.level != "Explore" else []
         )
@@ -258,7 +259,7 @@ class Hud:
         if any(middle + message.width // 2 > bar[0] - size // 2 for message in messages):
             messages = banners.lay_out_messages(words, on, width - size)
             bottom = min(bottom, bar[1])
-        said = tuple(text for text, _ in words), left, width, bottom
+        said = tuple(text for text, _ in words), left, width, bottom, on.camera.centre, on.camera.scale
         if not messages:
             self._said = None  # the same words, later, are placed where there is room then
         elif said != self._said:

@@ -113,7 +113,7 @@ _WATCHED = attrgetter(
     "canvas.size", "context", "copying", "dashboard.state", "edits.history.branches", "error_study.shown",
     "figures", "filming.choosing", "filming.naming.refused", "help", "impacts.shown", "language", "level",
     "lists_history", "making.choosing", "making.naming.refused", "making.refused",
-    "measured.number", "microscope.state", "pace.paused", "pace.speed", "scenes.recovery.offered",
+    "microscope.state", "pace.paused", "pace.speed", "scenes.recovery.offered",
     "scenes.shows_gallery", "search", "selection.entities", "sharing.choosing", "sharing.naming.refused",
     "shows_cards", "shows_stopwatch", "shows_words", "tool", "tour", "trust.state",
 )  # fmt: skip
@@ -325,7 +325,7 @@ class Interface:
             window.error_study.share if window.error_study.running else None,
             window.sharing.share if window.sharing.running else None,
             window.scenes.naming and window.scenes.naming.refused, window.measuring.writing is None,
-            window.lesson and window.lesson.state,
+            window.lesson and window.lesson.state, window.measured.number if window.pace.paused else None,
             window.scenes.opening and (window.scenes.opening.refused, window.scenes.opening.folder),
             *_WATCHED(window),
         )  # fmt: skip

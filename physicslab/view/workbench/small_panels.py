@@ -12,7 +12,6 @@ from physicslab.components import Meter, Slider, Transform
 from physicslab.components.meter import CORNERS
 from physicslab.components.slider import GRAVITY, SLIDER_FIELDS
 from physicslab.diagnostics.quantities import Reading, why_undefined
-from physicslab.diagnostics.scales import scales_of
 from physicslab.ecs.fields import InvalidValue
 from physicslab.languages.sentence import Sentence
 from physicslab.view.canvas.canvas import Rect
@@ -109,8 +108,10 @@ class MeterPanels:
 
     def sizes(self, ui: Ui, world: World, window: Window, *, flat: bool) -> list[Small]:
         """Return how large each meter is; one that is ``flat`` has its number beside its title."""
+        if not window.dashboard.meters:
+            return []
         self._beside, found, reading = {}, [], Reading(world)
-        scales = scales_of(world)
+        scales = window.scales
         shown = {meter.entity: _figures_of(reading, meter.key, scales) for meter in window.dashboard.meters}
         known = {entity: self._figures.get(entity, _WIDEST) for entity in shown}
         self._figures = {entity: max(known[entity], shown[entity], key=len) for entity in shown}
@@ -127,7 +128,9 @@ class MeterPanels:
 
     def build(self, ui: Ui, world: World, window: Window, places: dict[int, Rect]) -> None:
         """Build every meter at its place."""
-        reading, scales = Reading(world), scales_of(world)
+        if not window.dashboard.meters:
+            return
+        reading, scales = Reading(world), window.scales
         for meter in window.dashboard.meters:
             with ui.panel(f"meter {meter.entity}", places[meter.entity], rounded=True):
                 title, beside = named_key(meter.key, window), self._beside.get(meter.entity, 0.0)
