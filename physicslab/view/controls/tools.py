@@ -6,6 +6,7 @@ from collections.abc import Sequence
 import pygame
 
 from physicslab.components import Mass, Spring, Transform, Velocity
+from physicslab.ecs.fields import InvalidValue
 from physicslab.ecs.quantity_text import InvalidText
 from physicslab.ecs.vector import Vector2
 from physicslab.history import Command, Group, Remove, RemoveComponent, SetField
@@ -32,7 +33,7 @@ def let_go(world: World, window: Window) -> None:
 
 
 def give_typed(world: World, window: Window) -> None:
-    """Let go of the body in the hand with the speed, direction and mass that were typed, as one edit."""
+    """Let go of the body in the hand with the speed, direction and mass that were typed; one undo is all."""
     entity, typed, window.sketch.typed = window.hand.entity, window.sketch.typed, ""
     if entity is None:
         return
@@ -54,7 +55,10 @@ def give_typed(world: World, window: Window) -> None:
         speed = given.get("m/s", world.component(entity, Velocity).linear.magnitude)
         way = Vector2.from_angle(math.radians(given.get("deg", 0.0)))
         edits.append(SetField(entity, Velocity.__name__, "linear", way * speed))
-    window.edits.do(Group(f"{body}: {typed}", edits))
+    try:
+        window.edits.write(Group(f"{body}: {typed}", edits))
+    except InvalidValue as error:
+        window.notify(str(error), 5.0, failed=True)
 
 
 def take_hold(world: World, window: Window) -> bool:
