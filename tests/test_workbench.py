@@ -1,7 +1,7 @@
 """The panels around the world: all that has a key can be done with the mouse, and nothing is in the way."""
 
 from collections.abc import Iterator
-from itertools import combinations
+from itertools import combinations, pairwise
 from pathlib import Path
 
 import pygame
@@ -36,7 +36,7 @@ from physicslab.view.controls import lesson_actions
 from physicslab.view.controls.controls import CONTROLS, Control
 from physicslab.view.controls.spawning import BODIES, GROUPS
 from physicslab.view.controls.tool import Tool
-from physicslab.view.controls.tools import DRAWING, HAND, MORE_TOOLS, PALETTE, PAN, TOOLS
+from physicslab.view.controls.tools import DRAWING, HAND, MORE_TOOLS, PALETTE, PAN, TOOL_GROUPS, TOOLS
 from physicslab.view.window.desk import LEVELS
 from physicslab.view.window.recent import Recovery
 from physicslab.view.window.window import Window
@@ -640,6 +640,18 @@ def test_a_spring_is_drawn_with_the_mouse_alone(desk: Desk) -> None:
     click(desk, "Erase")
     at(desk, 1, 0)
     assert not desk.world.has(b, Transform) and desk.world.has(a, Transform)
+
+
+def test_tools_stand_in_groups(desk: Desk) -> None:
+    def edges(tool: Tool) -> tuple[int, int]:
+        _, top, _, height = desk.ui.places[tool.title]
+        return top, top + height
+
+    apart = [edges(b)[0] - edges(a)[1] for a, b in pairwise(PALETTE)]
+    begins = {group[0] for group in TOOL_GROUPS[1:]}
+    between = [gap for gap, tool in zip(apart, PALETTE[1:], strict=True) if tool in begins]
+    within = [gap for gap, tool in zip(apart, PALETTE[1:], strict=True) if tool not in begins]
+    assert min(between) >= max(within) + 0.4 * desk.sandbox.interface.text
 
 
 def test_the_tool_in_hand_is_marked(desk: Desk) -> None:

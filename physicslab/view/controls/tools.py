@@ -208,10 +208,15 @@ REMOVE = Tool("remove", "Erase", _ERASING, remove)
 _USAGE = "Select: click a body to see its numbers; drag to move or throw it."
 SELECT = Tool("select", "Select", _USAGE, select, end_select)
 PAN = Tool("pan", "Move view", "Move the view: drag anywhere.", pans=True, drags=True)
-_IN_SIGHT = ("circle", "box", "polygon", "block", "pendulum", "spring", "rod", "rope", "pin")
-PALETTE = (SELECT, *(DRAWING[name] for name in _IN_SIGHT), *MEASURING_TOOLS, REMOVE, PAN)
-"""The tools that are in sight, in their order."""
-MORE_TOOLS = tuple(tool for tool in DRAWING.values() if tool.name not in _IN_SIGHT)
+_MAKING = ("circle", "box", "polygon", "block", "pendulum")
+_JOINING = ("spring", "rod", "rope", "pin")
+TOOL_GROUPS = (
+    (SELECT,), *(tuple(DRAWING[name] for name in names) for names in (_MAKING, _JOINING)), MEASURING_TOOLS,
+    (REMOVE, PAN),
+)  # fmt: skip
+"""The tools that are in sight: those that make, join, measure and edit stand together."""
+PALETTE = tuple(tool for group in TOOL_GROUPS for tool in group)
+MORE_TOOLS = tuple(tool for tool in DRAWING.values() if tool not in PALETTE)
 """Those behind one more button."""
 TOOLS = {tool.name: tool for tool in (*PALETTE, *MORE_TOOLS)}
 """Every tool, by the name that ``Window.tool`` holds."""

@@ -22,7 +22,7 @@ from physicslab.view.controls.lesson_actions import LANGUAGES, choose_language, 
 from physicslab.view.controls.saving import scene_words
 from physicslab.view.controls.spawning import BODIES, GROUPS
 from physicslab.view.controls.tool import ICONS, Tool
-from physicslab.view.controls.tools import DRAWING, MORE_TOOLS, PALETTE, key_of
+from physicslab.view.controls.tools import DRAWING, MORE_TOOLS, PALETTE, TOOL_GROUPS, key_of
 from physicslab.view.toolkit.style import packed
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.toolkit.windows import NARROW, widget_label
@@ -244,6 +244,8 @@ def _width(lines: Sequence[tuple[str, str]], columns: int) -> float:
 
 _LOWEST = 1.1
 """Height of a button at least, in heights of the text."""
+_BETWEEN = 0.5
+"""Distance between groups of tools where there is room for it, in heights of the text."""
 _YIELDING = ("protractor", "note", "rope", "gate", "polygon", "block", "ruler")
 """Tools that are not in sight where there is little room, the first ones first."""
 
@@ -267,7 +269,14 @@ def build_palette(ui: Ui, rect: Rect, window: Window, *, names: bool) -> None:
         height = min(1.9 * ui.size, max((room.y - (buttons - 1) * gap) // buttons, least))
         behind = [tool for tool in (*PALETTE, *MORE_TOOLS) if tool not in shown and _is_open(window, tool)]
         size = room.x, height
+        spare = (room.y - buttons * height - (buttons - 1) * gap) / len(TOOL_GROUPS)
+        between = min(_BETWEEN * ui.size, spare - gap)
+        group = TOOL_GROUPS[0]
         for tool in shown:
+            if tool not in group:
+                group = next(one for one in TOOL_GROUPS if tool in one)
+                if between > 0.0:
+                    imgui.dummy(ImVec2(0.0, between))
             ui.button(
                 tool.title, _tip(tool), actions.choose_tool, tool,
                 shown=_words(ui, tool) if names else tool.icon, on=window.tool == tool.name, size=size,
