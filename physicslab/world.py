@@ -178,7 +178,7 @@ class World(Facade):
                 load = load_of(self)
                 if load > bears and not any(isinstance(part.stepper, Soft) for part in self.parts):
                     raise Overloaded(load)
-            self.schedule.run(Stage.FINISH, self, h * steps)
+            self.schedule.run(Stage.FINISH, self, h * made.steps)
         self.steps += made.steps
         self._forces_at = self.steps, self.motion_edits
         self.step_divisions = made.divisions

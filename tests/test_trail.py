@@ -139,6 +139,19 @@ def test_islands_and_recorded_runs_leave_a_trail() -> None:
             assert np.allclose(places, expected, rtol=0.0, atol=1e-9)
 
 
+def test_a_call_that_makes_fewer_steps_than_it_might_records_those() -> None:
+    worlds = [load_scene("carts") for _ in range(2)]  # one stepper leaves each step to another
+    cart = worlds[0].batch(Transform, Velocity).entities.tolist()[0]
+    for world in worlds:
+        world.add(cart, Trail(5.0))
+    worlds[0].run(steps=150)
+    for _ in range(150):
+        worlds[1].step()
+    (places, times), (expected, at) = (of_trails(world).path(cart) for world in worlds)
+    assert np.allclose(times, at, rtol=0.0, atol=1e-9) and times[-1] == pytest.approx(2.5)
+    assert np.allclose(places, expected, rtol=0.0, atol=1e-9)
+
+
 def test_what_is_undone_and_made_again_is_recorded_once() -> None:
     world = load_scene("two_planets")
     world.mark()

@@ -24,8 +24,9 @@ _STEPS = Field("steps", "whole", minimum=0, maximum=2**53, owner="run")
 _SECONDS = Field("seconds", "number", minimum=0.0, unit="s", owner="run")
 _STRIDE = Field("stride", "whole", minimum=1, owner="stepping")
 _AT_MOST = Field("at_most", "number", above=0.0, unit="s", owner="run")
-_SAMPLED = 32_768
-"""Samples of bodies that are taken at most before systems look at them."""
+_SAMPLED = 2_048
+"""Samples of bodies that are taken at most before systems look at them: where steps are made one by one, room
+for more would take as long as the steps."""
 _LOOK_S, _LOOK_STEPS = 0.1, 1000
 """So long [s], and so many steps of smooth motion, a run goes on before the clock is looked at."""
 

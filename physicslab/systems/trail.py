@@ -72,10 +72,10 @@ class TrailSystem(System):
             self._now = state.time
         self._length = state.table(Trail)["length"][self._rows]
         places = state.table(Transform)["position"][self._rows]
-        if samples is not None:
+        if samples is not None and (between := samples.between(self._now, now)):
             own, there = np.flatnonzero(np.isin(self._rows, samples.rows)), np.isin(samples.rows, self._rows)
             passed = places.copy()
-            for number in samples.between(self._now, now):
+            for number in between:
                 passed[own] = samples.motion[number, there, :2]
                 self._note(float(samples.times[number]), passed)
         self._note(now, places)
