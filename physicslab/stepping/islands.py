@@ -72,6 +72,8 @@ class Islands:
         being restored knows which they are.
     joined : bool
         Whether all have become one, for which steppers must be chosen.
+    apart_until : float
+        Until when [s] none can meet another; by it steps are made in calls, and accounts are rounded.
     """
 
     name: str = "islands"
@@ -88,7 +90,7 @@ class Islands:
         self.due, self.paused, self.joined = make is not None, False, False
         self._comes_apart = False
         self._examined = self._bodies = 0
-        self._apart_until = -math.inf
+        self.apart_until = -math.inf
         self._left = b""
         self._entities: Rows | None = None
 
@@ -184,7 +186,7 @@ class Islands:
         until = (self._examined // every + 1) * every * EXAMINED_S - _LATE
         steps = math.ceil((until - state.time) / h)
         if self.members:
-            apart = max(0.0, self._apart_until - state.time)
+            apart = max(0.0, self.apart_until - state.time)
             steps = min(steps, math.floor(apart / h + 0.5))
         return max(1, steps)
 
@@ -197,7 +199,7 @@ class Islands:
         changed, self._left = rows_changed(numbers_of(state), self._left), now
         for island in self.members:
             island.take(state, changed)
-        self._apart_until = -math.inf
+        self.apart_until = -math.inf
         self._join_near(state, state.simulation.dt)
 
     def _driven(self, state: State, island: Island) -> Rows:
@@ -264,7 +266,7 @@ class Islands:
 
     def _survey(self, state: State) -> Rows:
         """Find whether a world that is one may be divided; return the rows of its bodies."""
-        self._apart_until, rows = -math.inf, np.flatnonzero(partition.movable_in(state))
+        self.apart_until, rows = -math.inf, np.flatnonzero(partition.movable_in(state))
         few = len(rows) < 2
         self.why_one = sentence("one_body") if few else partition.why_whole(state, self._schedule) or ""
         self._comes_apart = not self.why_one and self._schedule.runs(Stage.CONTACT)
@@ -276,7 +278,7 @@ class Islands:
         self._entities = None
         self._follow_rows(state)
         self._comes_apart = any(island.touches for island in self.members)
-        self._apart_until = -math.inf
+        self.apart_until = -math.inf
         self._write_back(state)
 
     def _examine(self, state: State) -> bool:
@@ -310,11 +312,11 @@ class Islands:
     def _join_near(self, state: State, h: float) -> bool:
         """Join islands whose bodies may meet soon, in steps of ``h`` seconds; return whether any were."""
         touching = [island for island in self.members if island.touches]
-        if not touching or (state.time < self._apart_until - 0.5 * h and h <= state.simulation.dt):
+        if not touching or (state.time < self.apart_until - 0.5 * h and h <= state.simulation.dt):
             return False
         rows, stored = [island.shaped for island in touching], [island.stored() for island in touching]
         labels, steps = partition.meetings(state, rows, stored, h)
-        self._apart_until = state.time + steps * h
+        self.apart_until = state.time + steps * h
         if (labels == np.arange(len(labels))).all():
             return False
         members = [island for island in self.members if not island.touches]

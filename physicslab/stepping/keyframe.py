@@ -135,8 +135,9 @@ class Keyframe:
     """
 
     __slots__ = (
-        "_account", "_columns", "_contacts", "_counts", "_forces", "_islands", "_joints", "_laws", "_own",
-        "_paired", "_plan", "_rates", "_remade", "_remainders", "_sleep", "_structure", "_texts",
+        "_account", "_apart_until", "_columns", "_contacts", "_counts", "_forces", "_islands", "_joints",
+        "_laws", "_own", "_paired", "_plan", "_rates", "_remade", "_remainders", "_sleep", "_structure",
+        "_texts",
     )  # fmt: skip
 
     def __init__(self, world: Kept, last: Keyframe | None = None) -> None:
@@ -168,6 +169,7 @@ class Keyframe:
         }
         parts = {} if last is None else {entities.tobytes(): part for entities, part in last._islands}
         self._islands: list[tuple[_Array, Keyframe]] = []
+        self._apart_until = world.islands.apart_until
         for island in world.islands.members:
             part = Keyframe(cast(Kept, island.world), parts.get(island.entities.tobytes()))
             self._islands.append((island.entities, part))
@@ -268,6 +270,7 @@ class Keyframe:
             frame.restore(cast(Kept, part))
             members.append(Island(part, entities))
         world.islands.adopt(world, members)
+        world.islands.apart_until = self._apart_until
 
 
 def _put(then: _Array, now: _Array, rows: NDArray[np.int64] | None) -> None:
