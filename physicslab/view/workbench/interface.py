@@ -162,6 +162,7 @@ class Interface:
         self._note, self._about = NotePanel(), AboutPanel()
         self._next = self._palette = 0.0
         self._figures: WorldFigures | None = None
+        self._measured = 0
         self._offer_height = self._bar_height = (
             0  # of what is offered at the top of the room, and the first [px]
         )
@@ -275,7 +276,9 @@ class Interface:
         self._follow_keys()
         seen = self._state(world)
         late, is_new, self._figures = window.now - self._next, figures is not self._figures, figures
-        is_due = late >= (_WAIT if is_new else 0.0)
+        # Figures of forces are of the same step as their arrows.
+        is_due = late >= (_WAIT if is_new else 0.0) or window.measured.number != self._measured
+        self._measured = window.measured.number
         if seen != self._seen or is_due:
             if seen != self._seen:
                 self.toolkit.wake()
@@ -325,7 +328,7 @@ class Interface:
             window.error_study.share if window.error_study.running else None,
             window.sharing.share if window.sharing.running else None,
             window.scenes.naming and window.scenes.naming.refused, window.measuring.writing is None,
-            window.lesson and window.lesson.state, window.measured.number if window.pace.paused else None,
+            window.lesson and window.lesson.state,
             window.scenes.opening and (window.scenes.opening.refused, window.scenes.opening.folder),
             *_WATCHED(window),
         )  # fmt: skip
