@@ -67,11 +67,9 @@ class Islands:
         The islands, in the order of their first bodies; empty while the world is one.
     why_one : str
         The reason, if it is.
-    due, paused : bool
-        Whether they are all to be found again before the next step; whether they are not, as a world that is
-        being restored knows which they are.
-    joined : bool
-        Whether all have become one, for which steppers must be chosen.
+    due, paused, joined : bool
+        Whether all are to be found again before the next step; whether they are not, as a world that is being
+        restored knows them; whether they have become one, for which steppers must be chosen.
     apart_until : float
         Until when [s] none can meet another; by it steps are made in calls, and accounts are rounded.
     """
