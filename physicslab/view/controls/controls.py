@@ -34,7 +34,6 @@ from physicslab.world import World
 
 # ---- without a mouse: keys move the cursor, click, and go to menus and panels ------------------------------
 
-
 _STEP = 10
 """How far an arrow moves the cursor [px]; with Shift held by one."""
 
@@ -57,22 +56,19 @@ def enter(world: World, window: Window) -> None:
     """
     if window.sketch.held and not window.presses_by_key:
         _post(pygame.MOUSEBUTTONDOWN, _cursor(window), button=window.sketch.held)
-        return
-    if window.hand.entity is not None and window.sketch.typed:
+    elif window.hand.entity is not None and window.sketch.typed:
         tools.give_typed(world, window)
-        return
-    if window.copying is not None:
+    elif window.copying is not None:
         copies.make_copies(world, window)
-        return
-    if window.selection.entities and not window.presses_by_key:
+    elif window.selection.entities and not window.presses_by_key:
         window.keys_go_to = "fields"
-        return
-    place, tool = _cursor(window), tools.TOOLS[window.tool]
-    if not window.presses_by_key:
-        _post(pygame.MOUSEBUTTONDOWN, place, button=pygame.BUTTON_LEFT)
-    if window.presses_by_key or not tool.drags:
-        _post(pygame.MOUSEBUTTONUP, place, button=pygame.BUTTON_LEFT)
-    window.presses_by_key = tool.drags and not window.presses_by_key
+    else:
+        place, drags = _cursor(window), tools.TOOLS[window.tool].drags
+        if not window.presses_by_key:
+            _post(pygame.MOUSEBUTTONDOWN, place, button=pygame.BUTTON_LEFT)
+        if window.presses_by_key or not drags:
+            _post(pygame.MOUSEBUTTONUP, place, button=pygame.BUTTON_LEFT)
+        window.presses_by_key = drags and not window.presses_by_key
 
 
 def _cursor(window: Window) -> tuple[int, int]:
@@ -116,7 +112,6 @@ ARROWS = {
 
 
 # ---- the table ---------------------------------------------------------------------------------------------
-
 
 type State = Callable[[World, Window], bool]
 
