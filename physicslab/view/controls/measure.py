@@ -117,7 +117,7 @@ def motion_of(text: str) -> dict[str, float]:
     Raises
     ------
     InvalidText
-        If one of the numbers is none of these.
+        If a part is neither a speed, a direction nor a mass, or there are two of a kind.
     """
     found: dict[str, float] = {}
     for part in _BETWEEN.split(text.strip()):
