@@ -93,7 +93,9 @@ class SpringFlow:
     ) -> None:
         self._forces, bodies = tuple(forces), state.bodies
         springs = np.stack(spring_ends(state))
-        rows, a, b = springs[:, (layout.place[springs[1:]] >= 0).all(axis=0)]
+        springs = springs[:, (layout.place[springs[1:]] >= 0).all(axis=0)]
+        plain = state.table(Spring)["damping"][springs[0]] == 0.0
+        rows, a, b = springs[:, np.argsort(plain, kind="stable")]  # those with dampers first
         held = np.isin(layout.moving, np.concatenate((a, b)))
         moving, alone = layout.moving[held], layout.moving[~held]
         self._moving, inverse, drag = moving, bodies.inverse_mass[moving], state.table(Drag)
@@ -110,7 +112,7 @@ class SpringFlow:
             name: np.where(used, state.table(Spring)[name][rows[order]], 0.0)
             for name in ("rest_length", "stiffness", "damping")
         }
-        damped = bool(spring["damping"].any())
+        damped = WIDE * len(np.trim_zeros(spring["damping"].reshape(-1, WIDE).any(axis=1), "b"))
         parts = [np.zeros(HEAD + 6 * p), np.repeat(inverse, 2), np.zeros(4 * len(moving))]
         parts += [
             spring["rest_length"],
@@ -120,26 +122,29 @@ class SpringFlow:
             KICKS,
         ]
         slowed = np.flatnonzero(drag_per_mass(state, moving) > 0.0)
-        full = turns or damped or bool(len(slowed))
+        by_drag = np.full(-(-len(slowed) // WIDE) * WIDE, spare)
+        by_drag[: len(slowed)] = slowed
+        full = turns or damped > 0 or len(slowed) > 0
         if full:
             parts += [turned, np.zeros(len(moving) + 4 * p), np.ones(p), np.zeros(5 * p), spring["damping"]]
             parts += [np.zeros((3 + MOST_TERMS) * len(order)), *_arms(state, rows, order, slots, len(moving))]
             parts += [np.zeros(4 * len(order))]
-        slowing = drag_per_mass(state, moving)[slowed] / inverse[slowed]
-        parts += [slowing, np.zeros(2 * MOST_TERMS * len(slowed))]
+        gain = np.zeros((2, len(by_drag)))
+        gain[:, : len(slowed)] = drag_per_mass(state, moving)[slowed] / inverse[slowed], inverse[slowed]
+        parts += [gain.ravel(), np.zeros(2 * MOST_TERMS * len(by_drag))]
         by_mass = bodies.inverse_mass[alone]
         parts += [drag_per_mass(state, alone), drag["quadratic"][alone] * by_mass, _reciprocal(by_mass)]
         sizes = len(moving), p, len(order), len(DRIFTS), full, turns
         step = 0.5 * state.simulation.dt / state.simulation.substeps / group.steps
         dampers = [2 * np.flatnonzero(used & np.isin(end, ends)) + at_b for at_b, end in enumerate(slots)]
         whole = [
-            np.array((*sizes, len(alone), len(ends), len(slowed))),
+            np.array((*sizes, len(alone), len(ends), len(by_drag), damped)),
             moving,
             *slots,
             ends,
             *(dampers if damped else ()),
         ]
-        whole += [slowed, alone]
+        whole += [by_drag, alone]
         self.changes_with_speed = bool(drag["quadratic"][alone].any())
         self.arrays: Plain[Springs] = np.concatenate(parts), np.concatenate(whole).astype(np.int64)
         self.arrays[0][LONGEST : LONGEST + 3] = step, group.decay, _SERIES

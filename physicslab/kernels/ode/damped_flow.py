@@ -31,15 +31,19 @@ from physicslab.kernels.float64x8 import (
 )
 from physicslab.kernels.ode import spring_flow as S
 from physicslab.kernels.ode.drag_flow import fall_in_drag
-from physicslab.kernels.ode.held_drag import Slowed, book_drag, slow, slowed_in
+from physicslab.kernels.ode.held_drag import Slowed, book_drag, slow, slow_alone, slowed_in
 from physicslab.kernels.ode.spring_flow import Links, Places
 from physicslab.kernels.wide_layout import WIDE
+
+_AT_ONCE = 32 * WIDE
+"""Slots whose series are integrated together: they stay in the nearest cache."""
 
 
 class Full(NamedTuple):
     """Properties of dampers and arms beside :class:`Places` and :class:`Links`.
 
-    It is of p places, m bodies and n springs. ``spin_gain`` (m,) is the inverse inertia, 0 where no spring
+    ``damped`` is how many slots, from the first on, may have dampers. The rest is of p places, m bodies and n
+    springs. ``spin_gain`` (m,) is the inverse inertia, 0 where no spring
     may turn a body; ``angle`` (m,) [rad] and ``spin`` (p,) [rad/s], ``cosine`` and ``sine`` (p,) of it.
     ``rate`` (p, 2) and ``spin_rate`` (p,) are the last derivatives of velocities that were taken; ``push``
     (p, 2) and ``twist_push`` (p,) impulses of a kick; ``twist`` (p,) torques. ``damping`` (n,); ``along_x``,
@@ -48,6 +52,7 @@ class Full(NamedTuple):
     ``turned_a``, ``turned_b`` in that of the world.
     """
 
+    damped: int
     spin_gain: Numbers
     angle: Numbers
     rate: Vectors
@@ -70,11 +75,12 @@ class Full(NamedTuple):
 
 
 @inlined_by_numba
-def _full(numbers: Numbers, at: int, m: int, p: int, n: int) -> Full:
+def _full(numbers: Numbers, at: int, m: int, p: int, n: int, damped: int) -> Full:
     """Return the arrays that begin at a place of the numbers."""
     places, links = at + 2 * m, at + 2 * m + 9 * p
     arms = links + p + (4 + S.MOST_TERMS) * n
     return Full(
+        damped,
         numbers[at : at + m],
         numbers[at + m : places],
         numbers[places : places + 2 * p].reshape(p, 2),
@@ -166,10 +172,12 @@ def _evaluate(places: Places, links: Links, full: Full, slowed: Slowed, turns: b
         put(full.along_x, at, nx)
         put(full.along_y, at, ny)
         put(full.tension, at, tension)
-        ux, uy = _opening(places.speed, full.spin, links, full, turns, at)
-        opening = nx * ux + ny * uy
-        put(full.opening, at, opening)
-        pull = tension + take(full.damping, at) * opening
+        pull = tension
+        if at < full.damped:
+            ux, uy = _opening(places.speed, full.spin, links, full, turns, at)
+            opening = nx * ux + ny * uy
+            put(full.opening, at, opening)
+            pull = pull + take(full.damping, at) * opening
         _pull_ends(places, links, full, turns, at, pull * nx, pull * ny)
         short |= mask_bits(length < followed * take(links.shortest, at))
     slow(places, slowed, places.speed, 0)
@@ -180,7 +188,7 @@ def _evaluate(places: Places, links: Links, full: Full, slowed: Slowed, turns: b
 def _resist(places: Places, links: Links, full: Full, slowed: Slowed, term: int, turns: bool) -> None:
     """Compute the pull of dampers and drag for ``full.rate``, the derivative of velocities of an order."""
     n = len(links.a)
-    for at in range(0, n, WIDE):
+    for at in range(0, full.damped, WIDE):
         ux, uy = _opening(full.rate, full.spin_rate, links, full, turns, at)
         nx, ny = take(full.along_x, at), take(full.along_y, at)
         opening = nx * ux + ny * uy
@@ -220,27 +228,24 @@ def _change(places: Places, full: Full, first: bool, share: float, turns: bool) 
 
 
 @inlined
-def _dissipated(links: Links, full: Full, slowed: Slowed, span: float, terms: int) -> float:
-    """Return what dampers and drag take in a kick [J]: the integral of c r^2.
+def _dissipated(resistance: Numbers, series: Numbers, number: int, span: float, terms: int) -> float:
+    """Return the integral of c r^2 over a kick [J], summed over the first of n resistances c.
 
-    r is the series of how a damper opens, or of a velocity.
+    r is the ``series`` (MOST_TERMS * n,) of how a damper opens, or of a coordinate of a velocity.
     """
-    n, taken, first = len(links.a), everywhere(0.0), 1.0  # span^j / j!
-    d, dragged, rates = len(slowed.places), 0.0, slowed.rates
-    for j in range(terms):
-        second = first
-        for k in range(j, terms):
-            share = first * second * span / (j + k + 1) * (1.0 if j == k else 2.0)
-            second *= span / (k + 1)
-            for at in range(0, n, WIDE):
-                product = take(full.opening, j * n + at) * take(full.opening, k * n + at)
-                taken = taken + share * take(full.damping, at) * product
-            for i in range(d):
-                one, two = j * d + i, k * d + i
-                product = rates[one, 0] * rates[two, 0] + rates[one, 1] * rates[two, 1]
-                dragged += share * slowed.drag[i] * product
-        first *= span / (j + 1)
-    return sum_of(taken) + dragged
+    n, taken = len(resistance), everywhere(0.0)
+    for begin in range(0, number, _AT_ONCE):
+        first = 1.0  # span^j / j!
+        for j in range(terms):
+            second = first
+            for k in range(j, terms):
+                share = first * second * span / (j + k + 1) * (1.0 if j == k else 2.0)
+                second *= span / (k + 1)
+                for at in range(begin, min(begin + _AT_ONCE, number), WIDE):
+                    product = take(series, j * n + at) * take(series, k * n + at)
+                    taken = taken + share * take(resistance, at) * product
+            first *= span / (j + 1)
+    return sum_of(taken)
 
 
 @inlined
@@ -286,13 +291,18 @@ def _kick(
     """Change velocities by what acts for ``span`` seconds at these places, of which the pull is computed."""
     share = span
     _change(places, full, True, share, turns)
-    for term in range(1, terms):
-        share *= span / (term + 1)
-        _resist(places, links, full, slowed, term, turns)
-        _change(places, full, False, share, turns)
+    if full.damped == 0:
+        slow_alone(places, slowed, full.rate, span, terms)
+    else:
+        for term in range(1, terms):
+            share *= span / (term + 1)
+            _resist(places, links, full, slowed, term, turns)
+            _change(places, full, False, share, turns)
     _book(places, links, full, span, ends, held, turns, given)
     if terms > 1:  # else nothing is damped
-        given[S.DISSIPATED] += _dissipated(links, full, slowed, span, terms)
+        given[S.DISSIPATED] += _dissipated(full.damping, full.opening, full.damped, span, terms)
+        for rates in (slowed.rates_x, slowed.rates_y):
+            given[S.DISSIPATED] += _dissipated(slowed.drag, rates, len(slowed.drag), span, terms)
         book_drag(places, slowed, span, terms, given)
 
 
@@ -387,7 +397,8 @@ def flow_forces(motion: Motion, springs: Springs, span: float, account: Vectors)
         made = S.flow_springs(motion, springs, span, account)
     else:
         places, links, ends, given, drifts, kicks, at = S.named(springs)
-        full, slowed, dragged = _full(numbers, at, m, p, n), slowed_in(springs), last - alone - whole[8]
+        full, slowed = _full(numbers, at, m, p, n, whole[9]), slowed_in(springs)
+        dragged = last - alone - whole[8]
         held = whole[S.SIZES + m + 2 * n + whole[7] : dragged]
         steps, finer, made = S.steps_of(springs, span), 1, S.TURNS_FAST
         while made < 0 and finer <= S.FINEST:

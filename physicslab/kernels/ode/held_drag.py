@@ -4,18 +4,23 @@ from typing import NamedTuple
 
 from physicslab.kernels import Numbers, Rows, Vectors, inlined, inlined_by_numba
 from physicslab.kernels.arguments import Springs
+from physicslab.kernels.float64x8 import everywhere, put, put_vectors, sum_of, take, take_vectors
 from physicslab.kernels.ode.spring_flow import BY_DAMPERS, MOST_TERMS, Places
+from physicslab.kernels.wide_layout import WIDE
 
 
 class Slowed(NamedTuple):
-    """Which places of :class:`Places` drag slows (d,), and by how much [kg/s].
+    """Which places of :class:`Places` drag slows (d,), by how much [kg/s], and their inverse masses [1/kg].
 
-    Then the velocities at the start of a kick and their derivatives of each order (MOST_TERMS * d, 2).
+    They are a multiple of eight: no drag acts on the last, at the place of no spring. Then the velocities at
+    the start of a kick and their derivatives of each order, x and y (MOST_TERMS * d,).
     """
 
     places: Rows
     drag: Numbers
-    rates: Vectors
+    gain: Numbers
+    rates_x: Numbers
+    rates_y: Numbers
 
 
 @inlined_by_numba
@@ -27,8 +32,10 @@ def slowed_in(springs: Springs) -> Slowed:
     rates = last - 2 * MOST_TERMS * d
     return Slowed(
         whole[len(whole) - alone - d : len(whole) - alone],
+        numbers[rates - 2 * d : rates - d],
         numbers[rates - d : rates],
-        numbers[rates:last].reshape(MOST_TERMS * d, 2),
+        numbers[rates : rates + MOST_TERMS * d],
+        numbers[rates + MOST_TERMS * d : last],
     )
 
 
@@ -36,25 +43,47 @@ def slowed_in(springs: Springs) -> Slowed:
 def slow(places: Places, slowed: Slowed, velocity: Vectors, term: int) -> None:
     """Add drag by velocities, or by their derivative of an order, and note these."""
     d = len(slowed.places)
-    for k in range(d):
-        i = slowed.places[k]
-        x, y = velocity[i, 0], velocity[i, 1]
-        slowed.rates[term * d + k, 0], slowed.rates[term * d + k, 1] = x, y
-        places.pull[i, 0] -= slowed.drag[k] * x
-        places.pull[i, 1] -= slowed.drag[k] * y
+    for at in range(0, d, WIDE):
+        x, y = take_vectors(velocity, slowed.places, at)
+        put(slowed.rates_x, term * d + at, x)
+        put(slowed.rates_y, term * d + at, y)
+        pull_x, pull_y = take_vectors(places.pull, slowed.places, at)
+        drag = take(slowed.drag, at)
+        put_vectors(places.pull, slowed.places, at, pull_x - drag * x, pull_y - drag * y)
+
+
+@inlined
+def slow_alone(places: Places, slowed: Slowed, rate: Vectors, span: float, terms: int) -> None:
+    """Change velocities by all that follows their first derivative in a kick, where drag alone resists."""
+    d = len(slowed.places)
+    for at in range(0, d, WIDE):
+        x, y = take_vectors(rate, slowed.places, at)
+        speed_x, speed_y = take_vectors(places.speed, slowed.places, at)
+        drag, gain, share = take(slowed.drag, at), take(slowed.gain, at), span
+        for term in range(1, terms):
+            share *= span / (term + 1)
+            put(slowed.rates_x, term * d + at, x)
+            put(slowed.rates_y, term * d + at, y)
+            x, y = -(drag * x) * gain, -(drag * y) * gain
+            speed_x, speed_y = speed_x + share * x, speed_y + share * y
+        put_vectors(places.speed, slowed.places, at, speed_x, speed_y)
 
 
 @inlined
 def book_drag(places: Places, slowed: Slowed, span: float, terms: int, given: Numbers) -> None:
     """Book the impulses of drag in a kick: of each place the integral of its velocity, by the series."""
     d = len(slowed.places)
-    for k in range(d):
-        i, x, y, share = slowed.places[k], 0.0, 0.0, span
+    px, py, turned = everywhere(0.0), everywhere(0.0), everywhere(0.0)
+    for at in range(0, d, WIDE):
+        x, y, share = everywhere(0.0), everywhere(0.0), span
         for term in range(terms):
-            x += share * slowed.rates[term * d + k, 0]
-            y += share * slowed.rates[term * d + k, 1]
+            x = x + share * take(slowed.rates_x, term * d + at)
+            y = y + share * take(slowed.rates_y, term * d + at)
             share *= span / (term + 2)
-        x, y = -slowed.drag[k] * x, -slowed.drag[k] * y
-        given[BY_DAMPERS] += x
-        given[BY_DAMPERS + 1] += y
-        given[BY_DAMPERS + 2] += places.place[i, 0] * y - places.place[i, 1] * x
+        drag = take(slowed.drag, at)
+        x, y = -(drag * x), -(drag * y)
+        place_x, place_y = take_vectors(places.place, slowed.places, at)
+        px, py, turned = px + x, py + y, turned + (place_x * y - place_y * x)
+    given[BY_DAMPERS] += sum_of(px)
+    given[BY_DAMPERS + 1] += sum_of(py)
+    given[BY_DAMPERS + 2] += sum_of(turned)

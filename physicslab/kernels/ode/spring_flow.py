@@ -30,13 +30,13 @@ the angular momentum of gravity [N m s]; the work of ends that are driven [J]; w
 momenta that they bring in."""
 MOST_TERMS = 10
 """Terms of the series of a kick for which there is room."""
-SIZES = 9
+SIZES = 10
 """The whole numbers begin with: how many bodies move on springs, how many places there are, slots for
 springs, drifts of the method; whether there are dampers or arms, and so more numbers behind
 (:mod:`physicslab.kernels.ode.damped_flow`); arms; how many bodies are in drag alone; how many ends springs do
-not move; how many of the bodies on springs drag slows. Then :attr:`Places.moving`, the springs' ends at A and
-B, and the ``ends`` that springs do not move; dampers at these; bodies on springs that drag
-slows; bodies in drag alone."""
+not move; how many of the bodies on springs drag slows, made a multiple of eight; how many slots, from the
+first on, may have dampers. Then :attr:`Places.moving`, the springs' ends at A and B, and the ``ends`` that
+springs do not move; dampers at these; bodies on springs that drag slows; bodies in drag alone."""
 KNOWN, WEIGHT, _GIVEN, UNIFORM, LONGEST, DECAY, SERIES, HEAD = 0, 1, 3, 12, 14, 15, 16, 18
 """The numbers begin with: whether the pull is known (1,), the weight of all that moves on springs (2,) [N],
 what is given (GIVEN,), gravity (2,) [m/s^2], the longest step of the method [s], the fastest rate of decay
