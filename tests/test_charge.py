@@ -110,6 +110,18 @@ def test_beside_contacts_a_magnetic_field_does_no_work(contacts: str, integrator
         assert "charges move by blanes_moan: the magnetic field turns" in world.plan.reason
 
 
+def test_kicks_by_a_magnetic_field_do_no_work_but_are_wrong() -> None:
+    world = empty({"magnetic_field": 1.3}, contacts="soft", integrator="rk4")
+    world.add(circle(world, (0.0, 3.0), radius=0.2, velocity=(1.0, 0.0)), Charge(1.0))
+    box(world, (0.0, -9.0), width=9.0, height=1.0, static=True)
+    world.run(steps=20)
+    account = measure_account(world)
+    assert account.energy["fields"] == 0.0
+    assert account.energy["numerical"] == pytest.approx(account.change, rel=1e-12)
+    assert account.change > 1e-4  # kicks at the velocity before them lengthen it: the method's error
+    assert account.momentum["numerical"].magnitude < 1e-12
+
+
 @pytest.mark.parametrize("softening", [0.0, 0.5])
 @pytest.mark.parametrize("law", ["clamp", "plummer"])
 def test_charges_of_one_sign_repel_and_softening_holds_for_them_too(softening: float, law: str) -> None:

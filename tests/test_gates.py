@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import itertools
 import math
 import random
@@ -19,12 +20,13 @@ from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.files.checks import SceneError
 from physicslab.files.reader import FORMAT, read_scene
 from physicslab.history import AddComponent, History, Remove, SetField, Spawn
-from physicslab.prefabs import circle, pendulum
+from physicslab.prefabs import box, circle, pendulum
 from physicslab.state.state import State
 from physicslab.systems.gate import LIMIT, Crossing, GateSystem
 from physicslab.systems.gravity import GravitySystem
 from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.standard import standard_systems
+from physicslab.systems.strobe import StrobeSystem
 from physicslab.systems.system import Stage, System, at
 from physicslab.world import World
 
@@ -456,3 +458,47 @@ def test_a_file_with_a_gate_on_what_has_no_place_is_refused() -> None:
     assert str(refused.value) == (
         'gates.json: entity "g": Gate.end_body = "words": must be the id of an entity with a Transform'
     )
+
+
+# ---- many steps in a call ----------------------------------------------------------------------------------
+
+
+def watched(kind: str) -> tuple[World, int]:
+    """Return a world with a strobe and gates, one of them carried by a body that turns, and a body."""
+    if kind == "smooth":
+        world = World(physics=PhysicsConfig(), simulation=SimulationConfig(dt=1 / 120))
+        pendulum(world, (0, 0), length=0.6, angle=0.4)
+        (body,) = world.batch(Transform, Velocity).entities.tolist()
+    else:
+        world = World(
+            physics=PhysicsConfig(bounds=(-1, -1, 1, 2)), simulation=SimulationConfig(contacts=kind)
+        )
+        for k in range(6):
+            box(world, (-0.8 + 0.3 * k, 0.1 * k), width=0.2, height=0.2, velocity=(1.0 - 0.3 * k, 0.5))
+        body = world.batch(Transform, Velocity).entities.tolist()[2]
+        world.component(body, Velocity).angular = 5.0
+    world.spawn(Gate((0, -2), (0, 2)))
+    world.spawn(Gate((-3, -0.4), (3, -0.4)))
+    world.spawn(Gate((0, 0.0), (1.0, 0), start_body=body, end_body=body))
+    world.add(body, Strobe(0.013, 200))
+    return world, body
+
+
+@pytest.mark.parametrize("kind", ["smooth", "soft", "rigid"])
+def test_one_call_of_many_steps_records_what_single_steps_do(kind: str) -> None:
+    (one, _), (other, _) = watched(kind), watched(kind)
+    one.run(steps=200)
+    for _ in range(200):
+        other.step()
+    records = []
+    for world in (one, other):
+        gate, strobe = (world.schedule.find(kind) for kind in (GateSystem, StrobeSystem))
+        assert isinstance(gate, GateSystem) and isinstance(strobe, StrobeSystem)
+        records.append((gate, gate.keep(), *strobe.pictures(world)))
+    (gate, kept, rows, seen), (_, expected_kept, expected_rows, expected) = records
+    assert gate.count > 1 and len(seen) > 60
+    assert np.array_equal(rows, expected_rows)
+    assert np.allclose(seen, expected, rtol=0.0, atol=1e-11)
+    assert all(map(functools.partial(np.allclose, rtol=0.0, atol=1e-9), kept, expected_kept))
+    assert other.schedule.timings["GateSystem"].calls == 400
+    assert one.schedule.timings["GateSystem"].calls <= (4 if kind == "smooth" else 60)

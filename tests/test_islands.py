@@ -10,7 +10,7 @@ import pytest
 from numpy.typing import NDArray
 
 from physicslab import World, load_scene, save_scene
-from physicslab.components import Drag, Mass, Material, Pin, Shape, Spring, Transform, Velocity
+from physicslab.components import Charge, Drag, Mass, Material, Pin, Shape, Spring, Transform, Velocity
 from physicslab.contacts.report import contacts_of
 from physicslab.diagnostics.contact_warnings import contact_graph
 from physicslab.diagnostics.energy import Audit
@@ -19,6 +19,7 @@ from physicslab.diagnostics.step_warnings import lost_phase
 from physicslab.diagnostics.step_watch import StepWatch
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.vector import Vector2
+from physicslab.files.checks import SceneError
 from physicslab.files.scene import read_scene
 from physicslab.files.writer import write_scene
 from physicslab.history import History, Remove, RemoveComponent
@@ -114,6 +115,41 @@ def test_single_steps_have_the_bits_of_a_run() -> None:
         worlds[1].step()
     assert np.array_equal(motion(worlds[0], bodies[0]), motion(worlds[1], bodies[1]))
     assert worlds[0].collisions == worlds[1].collisions
+
+
+def smooth_and_touching() -> World:
+    """Return a charge that circles, a disc that falls, and a driven body, which belongs to both islands."""
+    world = World(physics=PhysicsConfig(magnetic_field=3.0, electric_field=Vector2(0.2, -2.8)))
+    disc(world, 0.5, 3.7, 0.3)
+    disc(world, 0.5, 5.7)
+    world.spawn(Transform((0.6, 1.6)), Velocity((1.0, 0.0)), Mass(1.0), Charge(1.0))
+    world.spawn(Transform((-0.15, 1.0), 0.2), Velocity((-0.87, 0.46)))
+    return world
+
+
+def test_smooth_motion_beside_contacts_is_divided_nowhere_in_a_run() -> None:
+    at_once, in_parts = smooth_and_touching(), smooth_and_touching()
+    at_once.run(steps=60)
+    for _ in in_parts.stepping(steps=60, stride=60, patience=600.0):
+        pass
+    assert [type(part.stepper).__name__ for part in at_once.parts].count("Flow") == 1
+    assert np.array_equal(motion(at_once, at_once.entities()), motion(in_parts, in_parts.entities()))
+
+
+@pytest.mark.parametrize("steps", [11, 23])
+def test_a_file_keeps_the_remainders_of_a_driven_body_in_each_island(steps: int) -> None:
+    world = smooth_and_touching()
+    world.run(steps=steps)
+    again = read_scene(write_scene(world))
+    for one in (world, again):
+        one.run(steps=60)
+    assert np.array_equal(motion(world, world.entities()), motion(again, again.entities()))
+    document = write_scene(world)
+    driven = [row for island in document["islands"] for row in island.get("driven", [])]
+    assert driven and all(len(row) == 7 for row in driven)
+    driven[0][4] = 1e-9
+    with pytest.raises(SceneError, match="remainders of at most the last digit of x, y and angle"):
+        read_scene(document)
 
 
 def passing(world: World) -> list[int]:

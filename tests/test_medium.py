@@ -239,6 +239,19 @@ def test_accounts_hold_for_what_splashes_about(integrator: str, shape: Shape) ->
     assert world.component(body, Velocity).angular != 2.0
 
 
+@pytest.mark.parametrize("contacts", ["auto", "soft"])
+def test_the_torque_of_water_on_a_body_that_cannot_turn_is_no_angular_momentum(contacts: str) -> None:
+    world = pool(1.3, viscosity=0.5, flow=(0.5, 0.0), contacts=contacts)
+    body = float_in(world, Shape.box(0.6, 0.2), 0.05, 0.15, linear=(1.4, -1.0), angle=0.4)
+    world.component(body, Mass).fixed_rotation = True
+    if contacts == "soft":  # beside something to touch
+        box(world, (0.0, -9.0), width=1.0, height=1.0, static=True)
+    world.run(steps=30)
+    account = measure_account(world).angular_momentum
+    assert abs(account["fields"]) > 1e-3
+    assert abs(account["numerical"]) < 1e-13
+
+
 def test_a_wind_carries_along_and_viscosity_stops_a_spin() -> None:
     world = pool(0.0, size=(40.0, 8.0), viscosity=0.2, flow=(3.0, 0.0), laws={"gravity_mode": "none"})
     r, m, t = 0.25, 0.5, 2.0

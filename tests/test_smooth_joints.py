@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from physicslab import World
-from physicslab.components import Gear, Mass, Pin, Rod, Slot, Transform, Velocity, Weld
+from physicslab.components import Gear, Mass, Pin, Rod, Slot, Spring, Transform, Velocity, Weld
 from physicslab.diagnostics.energy import measure_account, measure_energy
 from physicslab.diagnostics.joints import joint_states
 from physicslab.diagnostics.warnings import find_warnings
@@ -166,6 +166,26 @@ def test_a_joint_too_many_is_found_and_moves_nothing_else() -> None:
     assert not find_warnings(worlds[0])
     places = [world.table(Transform)["position"][1:3] for world in worlds]
     np.testing.assert_allclose(places[0], places[1], atol=1e-13)
+
+
+@pytest.mark.parametrize("far", [None, (5000.0, 0.0)])
+@pytest.mark.parametrize("apart", [1e-3, 1e-7])
+def test_an_edit_that_parts_a_joint_is_closed_on_account_of_joints_whatever_is_far(
+    far: tuple[float, float] | None, apart: float
+) -> None:
+    world = World(physics=PhysicsConfig(gravity_mode="planet", G=1e-12))
+    bob = body(world, 1.0, 0.0)
+    world.spawn(Rod(b=bob))
+    world.spawn(Spring(bob, anchor_b=(2.0, 0.0), rest_length=0.5))
+    if far is not None:
+        body(world, *far)
+    world.step()
+    world.component(bob, Transform).position = 1.0 + apart, 0.0
+    world.step()
+    account = measure_account(world).energy
+    assert account["joints"] == pytest.approx(-account["edits"], rel=1e-6)
+    assert account["joints"] > 40.0 * apart
+    assert abs(account["numerical"]) < 1e-12
 
 
 def test_rods_that_contradict_each_other_explode_nothing() -> None:

@@ -1,5 +1,6 @@
 """From a scene document, the parsed JSON, to a world, with every check."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
@@ -37,6 +38,8 @@ FORMAT = "physicslab-scene/1"
 
 _MOST_STEPS = 2.0**48
 """Steps after which the clock still tells a sixteenth of a step from none."""
+
+_DRIVEN = "[id, x, y, angle] or [id, x, y, angle, remainders of these]"
 
 KEYS = (
     "format", "name", "title", "description", "view", "desk", "numbers", "time", "physics", "simulation",
@@ -283,12 +286,15 @@ def _islands(
             seen.add(number)
             bodies.append(number)
         driven: list[list[float]] = []
-        poses = checks.checked_rows(found.get("driven", []), f"{where}.driven", "a list of [id, x, y, angle]")
+        poses = checks.checked_rows(found.get("driven", []), f"{where}.driven", f"a list of {_DRIVEN}")
         for place, pose in poses:
-            known = isinstance(pose, list) and len(pose) == 4 and all(map(checks.is_number, pose[1:]))
+            known = isinstance(pose, list) and len(pose) in (4, 7) and all(map(checks.is_number, pose[1:]))
             if not (known and isinstance(pose[0], str) and pose[0] in ids):
-                raise checks.refusal(place, pose, "[id, x, y, angle], an entity and three finite numbers")
-            driven.append([ids[pose[0]], *map(float, pose[1:])])
+                raise checks.refusal(place, pose, f"{_DRIVEN}, an entity and three or six finite numbers")
+            numbers = [*map(float, pose[1:]), 0.0, 0.0, 0.0][:6]
+            if any(abs(low) > math.ulp(high) for high, low in zip(numbers[:3], numbers[3:], strict=True)):
+                raise checks.refusal(place, pose, "remainders of at most the last digit of x, y and angle")
+            driven.append([ids[pose[0]], *numbers])
         islands.append(KeptIsland(bodies, *_solver_values(found, simulation, where), driven))
     return islands
 

@@ -90,8 +90,9 @@ class WorldSnapshot:
         self.joints = list(world.joints.kept())
         parts: list[State] = [island.state for island in members] or [world]
         self.rests = [rest for part in parts for rest in export_rests(part)]
-        low = {row[0]: row for part in reversed(parts) for row in export_remainders(part)}
-        self.remainders = [low[entity] for entity in sorted(low)]
+        # Driven bodies have others in each island, which keeps them.
+        own = {body for island in members for body in island.entities.tolist()} if members else living
+        self.remainders = sorted(row for part in parts for row in export_remainders(part) if row[0] in own)
         self._rows = dict(world.entity_index.row_of)
         self._tables = _copied(world.entity_index)
 

@@ -25,8 +25,9 @@ from physicslab.state.state import State
 from physicslab.systems.joint_forces import pivots_of
 from physicslab.systems.system import ForceSystem, Stage
 
-_APART = 1e-6
-"""Share of the coordinates by which joints are apart that were put so: what methods leave is far less."""
+_APART, _PUT = 1e-6, 1e-9
+"""Share of the coordinates of bodies by which joints are apart after a step if they cannot be kept; and by
+which they are before one if soft joints or an edit left them so: what methods leave is far less."""
 
 NOTHING_WANTED = np.zeros(0), np.zeros((0, 0)), np.zeros((0, 0))
 """Moments at which the motion is wanted, of which there are none, and room for coordinates and rates."""
@@ -260,9 +261,8 @@ class OdeSystem:
         left = direct_entry(project)(q, self.v.copy(), np.zeros(n), np.zeros(n), *self.joints)
         if q.tobytes() == self.q.tobytes():
             return None
-        moved = float(np.abs(q - self.q).max(initial=0.0))
-        apart = moved > _APART * float(np.abs(self.q[:n]).max(initial=0.0)) and left <= _APART * moved
-        return q if apart else None
+        moved, size = _way_and_size(self.q[:n], q[:n])
+        return q if moved > _PUT * size and left <= _APART * moved else None
 
     def place(self, state: State, q: NDArray[np.float64]) -> None:
         """Put what moves at other places, coordinates (n,) like ``q`` [m and rad], in the tables too."""
@@ -278,7 +278,8 @@ class OdeSystem:
         direct_entry(project)(self.q, self.v, *low, *self.joints)
         if before.tobytes() == self.q[:n].tobytes():  # which is found in a tenth of the time
             return False
-        return bool(np.abs(self.q[:n] - before).max(initial=0.0) > _APART * np.abs(before).max(initial=0.0))
+        moved, size = _way_and_size(before, self.q[:n])
+        return moved > _APART * size
 
     def find_joint_forces(self, state: State) -> None:
         """Find the forces of joints in the present state of motion, where nothing touches."""
@@ -441,3 +442,9 @@ def steady_turn(
     free = state.bodies.inverse_mass[rows] > 0.0
     turned = spin * np.where(free, -np.expm1(-c * time) / c, time)
     return angle + turned, np.where(free, spin * np.exp(-c * time), spin)
+
+
+def _way_and_size(before: NDArray[np.float64], after: NDArray[np.float64]) -> tuple[float, float]:
+    """Return by how much coordinates (n,) moved at most, and the largest of those that did."""
+    moved = before != after
+    return float(np.abs(after - before).max(initial=0.0)), float(np.abs(before[moved]).max(initial=0.0))

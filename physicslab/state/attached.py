@@ -15,14 +15,20 @@ INSTRUMENTS: tuple[type[Any], ...] = (Note, Ruler, Protractor, Gate)
 type _Points = NDArray[np.float64]
 
 
-def points_of(state: State, kind: type[Any], name: str, rows: NDArray[np.int64]) -> tuple[_Points, _Points]:
-    """Return where a point of the instruments in some rows is (k, 2) [m], and how fast it moves [m/s]."""
-    table, transform, velocity = state.table(kind), state.table(Transform), state.table(Velocity)
+def carriers(state: State, kind: type[Any], name: str, rows: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return the rows (k,) of the bodies that a point of the instruments in some ``rows`` goes with."""
     # Without a body, or where it is gone, a point goes with row 0: the world, at rest in its origin.
-    body = np.maximum(state.entity_index.rows_of(table[f"{name}_body"][rows]), 0)
-    arm = rotated(table[name][rows], transform["angle"][body])
-    turning = velocity["angular"][body][:, None] * np.stack((-arm[:, 1], arm[:, 0]), axis=1)
-    return transform["position"][body] + arm, velocity["linear"][body] + turning
+    return np.maximum(state.entity_index.rows_of(state.table(kind)[f"{name}_body"][rows]), 0)
+
+
+def carried(motion: _Points, points: _Points) -> tuple[_Points, _Points]:
+    """Return where points in the frames of bodies (k, 2) are [m], and how fast they move (..., k, 2) [m/s].
+
+    ``motion`` (..., k, 6) has x, y, the angle and their rates of the bodies.
+    """
+    arm = rotated(points, motion[..., 2])
+    turning = motion[..., 5, None] * np.stack((-arm[..., 1], arm[..., 0]), axis=-1)
+    return motion[..., :2] + arm, motion[..., 3:5] + turning
 
 
 def place_of(state: State, entity: int, kind: type[Any], name: str) -> Vector2:

@@ -2,7 +2,7 @@
 
 import math
 from copy import copy
-from typing import Any, Self
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +18,22 @@ _LONGER = 2e-3
 """Share of a step by which the last of a run may be longer."""
 NOTHING_SAMPLED = np.zeros(0, np.int64), np.zeros((0, 0)), 1, 1
 """Samples of no row, as kernels take them (:class:`physicslab.kernels.arguments.Sampled`)."""
+
+
+class StepEnds(NamedTuple):
+    """The ends of the steps that were one call, the present state as the last.
+
+    Attributes
+    ----------
+    times, spans : float64 arrays (k,)
+        When each ends, and how long it is [s].
+    motion : float64 array (k, n, 6)
+        x and y [m], the angle [rad] and their rates of some rows then.
+    """
+
+    times: NDArray[np.float64]
+    spans: NDArray[np.float64]
+    motion: NDArray[np.float64]
 
 
 class Samples:
@@ -108,10 +124,16 @@ class Samples:
         known, rounding = self.times[: self.count - self._first], _LATE * self.dt
         return range(*np.searchsorted(known, (early + rounding, late - rounding)).tolist())
 
+    def put_into(self, motion: NDArray[np.float64], rows: NDArray[np.int64], numbers: range) -> None:
+        """Write samples of some numbers over ``motion`` (k, n, 6) of ``rows`` (n,), where they move."""
+        column = np.minimum(np.searchsorted(self.rows, rows), max(len(self.rows) - 1, 0))
+        moves = np.flatnonzero(self.rows[column] == rows) if len(self.rows) else column[:0]
+        motion[:, moves] = self.motion[numbers.start : numbers.stop, column[moves]]
+
     def repeat(self, state: Entities, time: float, span: float) -> None:
         """Take the state as it is for all samples within ``span`` seconds from a time [s] on."""
         places, after = self.due(time, span)
-        self.put(places, time + after)[:] = _motion_of(state, self.rows)
+        self.put(places, time + after)[:] = motion_of_rows(state, self.rows)
 
     def take(self, state: Entities, time: float) -> None:
         """Take a sample of the state as it is, at a time [s], if one is due then."""
@@ -125,11 +147,28 @@ class Samples:
         self._write(state, self.count - last, time)
 
     def _write(self, state: Entities, place: int, time: float) -> None:
-        self.put(np.array([place]), np.array([time]))[0] = _motion_of(state, self.rows)
+        self.put(np.array([place]), np.array([time]))[0] = motion_of_rows(state, self.rows)
 
     def _done(self, time: float) -> int:
         """Return how many steps are made at a time [s]."""
         return math.floor((time - self._start) / self.dt + _LATE)
+
+
+def ends_of_steps(
+    samples: Samples | None, state: Entities, rows: NDArray[np.int64], early: float, late: float, h: float
+) -> StepEnds:
+    """Return the ends of the steps between two times [s], of ``h`` seconds together, which are one call.
+
+    Their motion is that of ``rows`` (n,).
+    """
+    between = range(0) if samples is None else samples.between(early, late)
+    motion = np.repeat(motion_of_rows(state, rows)[None], len(between) + 1, axis=0)
+    if samples is None or not between:
+        return StepEnds(np.array([late]), np.array([h]), motion)
+    samples.put_into(motion[:-1], rows, between)
+    spans = np.full(len(motion), samples.dt)
+    spans[-1] = h - len(between) * samples.dt
+    return StepEnds(np.append(samples.times[between.start : between.stop], late), spans, motion)
 
 
 def moving_rows(state: Entities) -> NDArray[np.int64]:
@@ -137,8 +176,8 @@ def moving_rows(state: Entities) -> NDArray[np.int64]:
     return np.flatnonzero(state.table(Transform).present & state.table(Velocity).present)
 
 
-def _motion_of(state: Entities, rows: NDArray[np.int64]) -> NDArray[np.float64]:
-    """Return x, y [m], the angle [rad] and their rates of rows (moving, 6)."""
+def motion_of_rows(state: Entities, rows: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Return x, y [m], the angle [rad] and their rates of rows (n, 6)."""
     transform, velocity, found = state.table(Transform), state.table(Velocity), np.empty((len(rows), FIELDS))
     columns: tuple[Any, ...] = (transform["angle"], velocity["angular"])
     found[:, 0:2], found[:, 3:5] = transform["position"][rows], velocity["linear"][rows]

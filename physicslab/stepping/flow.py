@@ -51,6 +51,7 @@ class Flow(Stepper):
     name: str = "flow"
     title: str = "Steps as one compiled flow"
     leaps: bool = True
+    divisible: bool = False
     samples: bool = True
 
     def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None:

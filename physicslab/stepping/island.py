@@ -14,6 +14,7 @@ from physicslab.ecs.component import Component
 from physicslab.ecs.context import create_numbered
 from physicslab.ecs.table import Table
 from physicslab.kernels import near_counts
+from physicslab.state.remainders import coordinate_keys
 from physicslab.state.state import State
 from physicslab.stepping.flow import Flow
 from physicslab.stepping.partition import movable_in
@@ -262,8 +263,8 @@ class KeptIsland:
     chosen : tuple, optional
         Choices made for it as it once moved, where others would be made now (:attr:`StepPlan.kept`).
     driven : list of lists
-        Entity, x, y [m] and angle of bodies that move at given speeds, where rounding has led them
-        elsewhere than in the whole world.
+        Entity, x, y [m] and angle of bodies that move at given speeds, and the remainders of these three,
+        where there are any, or rounding has led them elsewhere than in the whole world.
     """
 
     bodies: list[int]
@@ -284,14 +285,18 @@ def kept_of(state: State, island: Island) -> KeptIsland:
     part, contacts = island.state, island.state.contacts
     span = contacts.impulse_dt or part.simulation.dt / part.simulation.substeps
     rows = np.flatnonzero(part.table(Velocity).present & ~movable_in(part))
-    there = state.entity_index.rows_of(part.entity_index.entities[rows])
-    own, whole = part.table(Transform), state.table(Transform)
-    moved = (own["position"][rows] != whole["position"][there]).any(axis=1)
-    moved |= own["angle"][rows] != whole["angle"][there]
-    driven = [
-        [int(part.entity_index.entities[row]), *own["position"][row].tolist(), float(own["angle"][row])]
-        for row in rows[moved]
-    ]
+    entities = part.entity_index.entities[rows]
+    poses, whole = _poses(part, rows), _poses(state, state.entity_index.rows_of(entities))
+    q = np.concatenate((poses[:, :2].ravel(), poses[:, 2]))
+    low, _ = part.remainders.of(coordinate_keys(entities, entities), q, q)
+    numbers = np.column_stack((entities, poses, low[: 2 * len(rows)].reshape(-1, 2), low[2 * len(rows) :]))
+    driven = numbers[(poses != whole).any(axis=1) | numbers[:, 4:].any(axis=1)].tolist()
     with part.active():
         chosen = outlived(part, island.world.schedule, island.world.plan)
     return KeptIsland(island.entities.tolist(), span, contacts.substep_factor, chosen, driven)
+
+
+def _poses(state: State, rows: Rows) -> NDArray[np.float64]:
+    """Return x, y [m] and angle of some rows (n, 3)."""
+    transform = state.table(Transform)
+    return np.column_stack((transform["position"][rows], transform["angle"][rows]))

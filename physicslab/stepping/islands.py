@@ -86,10 +86,8 @@ class Islands:
         self.members: tuple[Island, ...] = ()
         self.why_one: str = sentence("one_island")
         self.due, self.paused, self.joined = make is not None, False, False
-        self._comes_apart = False
+        self._comes_apart, self.divisible, self.apart_until, self._left = False, True, -math.inf, b""
         self._examined = self._bodies = 0
-        self.apart_until = -math.inf
-        self._left = b""
         self._entities: Rows | None = None
 
     # ---- as a stepper --------------------------------------------------------------------------------------
@@ -265,10 +263,9 @@ class Islands:
     def _survey(self, state: State) -> Rows:
         """Find whether a world that is one may be divided; return the rows of its bodies."""
         self.apart_until, rows = -math.inf, np.flatnonzero(partition.movable_in(state))
-        few = len(rows) < 2
+        few, self._bodies = len(rows) < 2, len(rows)
         self.why_one = sentence("one_body") if few else partition.why_whole(state, self._schedule) or ""
         self._comes_apart = not self.why_one and self._schedule.runs(Stage.CONTACT)
-        self._bodies = len(rows)
         return rows
 
     def _begin(self, state: State) -> None:
@@ -276,7 +273,8 @@ class Islands:
         self._entities = None
         self._follow_rows(state)
         self._comes_apart = any(island.touches for island in self.members)
-        self.apart_until = -math.inf
+        # The last digits of smooth motion depend on where it is divided.
+        self.divisible, self.apart_until = all(island.touches for island in self.members), -math.inf
         self._write_back(state)
 
     def _examine(self, state: State) -> bool:
@@ -393,7 +391,7 @@ class Islands:
         if len(kept) and not np.array_equal(bodies, state.entity_index.entities[partition.movable_in(state)]):
             self.find_again()  # what moves was edited in the file
             return
-        members: list[Island] = []
+        members = list[Island]()
         for one in kept:
             island = self._island(state, np.array(sorted(one.bodies), np.int64), [state])
             part = island.state
@@ -401,6 +399,8 @@ class Islands:
             for entity, *pose in one.driven:
                 row, transform = part.entity_index.row_of[int(entity)], part.table(Transform)
                 transform["position"][row], transform["angle"][row] = pose[:2], pose[2]
+            own = {int(row[0]): ((*row[1:4], 0.0, 0.0, 0.0), (*row[4:], 0.0, 0.0, 0.0)) for row in one.driven}
+            part.remainders = Remainders.joined([Remainders.of_bodies(own), part.remainders])
             if one.chosen is not None:
                 with part.active():
                     island.world.resume(*one.chosen)

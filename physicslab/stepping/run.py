@@ -24,9 +24,10 @@ _STEPS = Field("steps", "whole", minimum=0, maximum=2**53, owner="run")
 _SECONDS = Field("seconds", "number", minimum=0.0, unit="s", owner="run")
 _STRIDE = Field("stride", "whole", minimum=1, owner="stepping")
 _AT_MOST = Field("at_most", "number", above=0.0, unit="s", owner="run")
-_SAMPLED = 2_048
-"""Samples of bodies that are taken at most before systems look at them: where steps are made one by one, room
-for more would take as long as the steps."""
+_SAMPLED, _SAMPLED_STEPS = 2_048, 16
+"""Samples of bodies that are taken at most before systems look at them, of at least so many steps.
+
+Where steps are made one by one, room for more would take as long as the steps."""
 _LOOK_S, _LOOK_STEPS = 0.1, 1000
 """So long [s], and so many steps of smooth motion, a run goes on before the clock is looked at."""
 
@@ -216,7 +217,8 @@ def _go_on(
     if world.schedule.observer is not None:
         return world.advance(h, 1)
     if world.schedule.samplers:
-        wanted = max(1, min(wanted, length.steps - done, _SAMPLED // max(1, len(moving_rows(world)))))
+        room = max(_SAMPLED // max(1, len(moving_rows(world))), _SAMPLED_STEPS)
+        wanted = max(1, min(wanted, length.steps - done, room))
         world.samples = taken or Samples(world, world.time, h, 1, wanted)
     try:
         return _advance(world, length, done, h, wanted, at_once, is_patient)
@@ -231,7 +233,8 @@ def _advance(
     best = world.stepper_for(h)
     count = max(1, min(wanted, length.whole - done, world.steps_ahead(h)))
     if not best.leaps:
-        divides = at_once < count and (is_patient or not all(one.compiled for one in best.kernels))
+        may = is_patient or not all(one.compiled for one in best.kernels)
+        divides = may and at_once < count and best.divisible
         return world.advance(h, at_once if divides else count)
     if isinstance(best, Flow) and best.whole and wanted >= length.steps - done:
         return _leap(world, length.seconds - length.elapsed(done), 1, length.steps - done)

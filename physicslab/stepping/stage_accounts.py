@@ -57,7 +57,9 @@ class StageAccounts:
             [force for force in others if force.potential is not None],
             others * (not flown),
         )
-        free, springs = free * (not flown), springs and not flown
+        # A force that only turns velocities does no work: what its kicks change of the energy is an error.
+        free = [force for force in free if force.gyration(state) is None] * (not flown)
+        springs = springs and not flown
         self._apart = [force for force in others if force.account != self.other]
         self._free = free
         self._pulls = {force: np.zeros_like(state.bodies.pull) for force in (*free, *self._apart)}

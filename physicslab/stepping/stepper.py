@@ -53,6 +53,8 @@ class Advancer(Protocol):
         Kernels that it calls; compiled before it first advances, and not before.
     leaps : bool
         Whether several steps are one advance, made as a whole or not at all.
+    divisible : bool
+        Whether several steps have the same bits as one by one.
     keeps_balance : bool
         Whether it measures energy and momentum before its steps and after them.
     leaves_forces : bool
@@ -74,6 +76,10 @@ class Advancer(Protocol):
     @property
     def leaps(self) -> bool:
         """Whether several steps are one advance."""
+
+    @property
+    def divisible(self) -> bool:
+        """Whether several steps have the same bits as one by one."""
 
     @property
     def kernels(self) -> tuple[Any, ...]:
@@ -123,6 +129,7 @@ class Stepper(Advancer, Protocol):
     reason: str = ""
     kernels: tuple[Any, ...] = ()
     leaps: bool = False
+    divisible: bool = True
     keeps_balance: bool = False
     leaves_forces: bool = False
     samples: bool = False

@@ -7,9 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Gate, Transform, Velocity
-from physicslab.state.attached import let_go_of_removed, points_of
+from physicslab.state.attached import carried, carriers, let_go_of_removed
+from physicslab.state.samples import ends_of_steps, motion_of_rows
 from physicslab.state.state import State
-from physicslab.systems.gate_passage import Moment, Passage, Roots
+from physicslab.systems.gate_passage import Moments, Passage, Roots
 from physicslab.systems.system import Stage, System, at
 
 LIMIT = 500
@@ -59,6 +60,7 @@ class GateSystem(System):
     """
 
     needs = (Gate,)
+    sampled = True
 
     def __init__(self) -> None:
         self.crossings: tuple[Crossing, ...] = ()
@@ -67,7 +69,7 @@ class GateSystem(System):
         self._gate_rows = self._body_rows = np.zeros(0, np.int64)
         self._side = np.zeros((0, 0), np.int8)  # 0: not known yet, as for one that was put on the gate
         self._pending: dict[tuple[int, int], Crossing | None] = {}
-        self._before: Moment | None = None
+        self._before: _Numbers | None = None
         self._kept: tuple[NDArray[Any], ...] = ()
         self._rows = np.zeros((0, 5))
         self._rows_of: tuple[Crossing, ...] = self.crossings
@@ -122,40 +124,45 @@ class GateSystem(System):
 
     @at(Stage.PREPARE)
     def begin(self, state: State, h: float) -> None:
-        """Note where everything is at the beginning of the step, and on which side of the gates."""
-        before = self._before = self._moment(state)
-        self._side = before.sides(self._side)
-        if self._pending:
-            self._drop_pending(before)
+        """Note where everything is at the beginning of the step."""
+        self._before = motion_of_rows(state, self._followed(state))
         if self.crossings and self.crossings[-1].time > state.time + h:  # the clock was set back
             self.crossings = tuple(one for one in self.crossings if one.time <= state.time)
 
     @at(Stage.FINISH)
     def record(self, state: State, h: float) -> None:
-        """Note what was crossed within the step."""
+        """Note what was crossed within the step, or within each of the steps that were one call."""
         if self._before is None:
             return
-        before, after = self._before, self._moment(state)
-        side = after.sides(self._side)
-        through = (side != self._side) & (self._side != 0)
-        on_line = (np.abs(after.distance) <= after.width) & (
-            (before.distance > 0.0) != (after.distance > 0.0)
-        )
-        returns = before.may_return(after, self._side, h) & ~through
-        gate, body = np.nonzero(through | on_line | returns)
-        if len(gate):
-            roots = Passage(before, after, gate, body, h).roots()
-            deep = roots.beyond > after.width[gate, 0]
-            self._note(self._located(roots, gate, body, through[gate, body], deep, state.time, h))
-        self._side = side
-        if self._pending:
-            self._drop_pending(after)
+        ends = ends_of_steps(state.samples, state, self._followed(state), state.time, state.time + h, h)
+        moments = self._moments(state, np.concatenate((self._before[None], ends.motion)))
+        distance, width, side = moments.distance, moments.width, moments.sides(self._side)
+        through = (side[1:] != side[:-1]) & (side[:-1] != 0)
+        on_line = (np.abs(distance[1:]) <= width[1:]) & ((distance[1:] > 0.0) != (distance[:-1] > 0.0))
+        crossed = through | on_line | moments.may_return(side[:-1], ends.spans)
+        begins, seen = np.append(state.time, ends.times[:-1]), 0
+        for step in np.flatnonzero(crossed.any(axis=(1, 2))).tolist():
+            self._drop_pending(moments, seen, step + 1)
+            gate, body = np.nonzero(crossed[step])
+            span, seen = float(ends.spans[step]), step + 1
+            roots = Passage(moments, step, gate, body, span).roots()
+            deep = roots.beyond > width[step + 1, gate, 0]
+            found = (through[step, gate, body], deep, float(begins[step]), span)
+            self._note(self._located(roots, gate, body, *found))
+        self._drop_pending(moments, seen, len(side))
+        self._side = side[-1]
 
-    def _moment(self, state: State) -> Moment:
-        transform, velocity = state.table(Transform), state.table(Velocity)
-        rows = self._body_rows
-        start, end = (points_of(state, Gate, name, self._gate_rows) for name in Gate.POINTS)
-        return Moment(transform["position"][rows], velocity["linear"][rows], *start, *end)
+    def _followed(self, state: State) -> _Whole:
+        """Return the rows of the bodies, and of what carries the ends of gates (n + 2 g,)."""
+        ends = (carriers(state, Gate, name, self._gate_rows) for name in Gate.POINTS)
+        return np.concatenate((self._body_rows, *ends))
+
+    def _moments(self, state: State, motion: _Numbers) -> Moments:
+        """Return the moments of a motion (t, n + 2 g, 6) of the rows that are followed."""
+        table, (n, g) = state.table(Gate), (len(self._body_rows), len(self._gate_rows))
+        start = carried(motion[:, n : n + g], table["start"][self._gate_rows])
+        end = carried(motion[:, n + g :], table["end"][self._gate_rows])
+        return Moments(motion[:, :n, :2], motion[:, :n, 3:5], *start, *end)
 
     def _located(
         self, roots: Roots, gate: _Whole, body: _Whole, through: NDArray[np.bool_], deep: NDArray[np.bool_],
@@ -186,12 +193,16 @@ class GateSystem(System):
         self.count += len(found)
         self.crossings = (*self.crossings, *found)[-LIMIT:]
 
-    def _drop_pending(self, moment: Moment) -> None:
-        """Forget what went through the line of a gate and is out on the side that it came from."""
+    def _drop_pending(self, moments: Moments, first: int, behind: int) -> None:
+        """Forget what went through the line of a gate and is then out on the side that it came from.
+
+        The moments are those from number ``first`` on, before number ``behind``.
+        """
         for gate, body in list(self._pending):
             g, n = np.searchsorted(self._gates, gate), np.searchsorted(self._bodies, body)
             there = n < len(self._bodies) and self._bodies[n] == body
-            if not there or abs(moment.distance[g, n]) > moment.width[g, 0]:
+            distance, width = moments.distance[first:behind, g], moments.width[first:behind, g, 0]
+            if not there or bool((np.abs(distance[:, n]) > width).any()):
                 del self._pending[gate, body]
 
 

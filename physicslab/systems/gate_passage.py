@@ -1,7 +1,5 @@
 """How bodies pass gates within a step: on which side they are, and when they are on the line."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -24,15 +22,15 @@ type _Whole = NDArray[np.int64]
 
 
 @dataclass(slots=True)
-class Moment:
-    """Positions and velocities of bodies and gates at the beginning or the end of a step.
+class Moments:
+    """Positions and velocities of bodies and gates at the beginning of a step and at the ends of some.
 
     Attributes
     ----------
-    body, body_velocity : float64 arrays (n, 2)
-    start, end, start_velocity, end_velocity : float64 arrays (g, 2)
+    body, body_velocity : float64 arrays (t, n, 2)
+    start, end, start_velocity, end_velocity : float64 arrays (t, g, 2)
         Those of the ends of gates.
-    distance, width : float64 arrays (g, n), (g, 1)
+    distance, width : float64 arrays (t, g, n), (t, g, 1)
         How far each body is to the left of each gate's line [m], NaN of one without length; and from which
         distance on it is out of the gate [m].
     """
@@ -48,42 +46,47 @@ class Moment:
 
     def __post_init__(self) -> None:
         way = self.end - self.start
-        self.width = _WIDTH * np.hypot(way[:, 0], way[:, 1])[:, None]
+        self.width = _WIDTH * np.hypot(way[..., 0], way[..., 1])[..., None]
         self.distance = self._to_the_left(self.body, self.start)
 
-    def rate(self) -> _Numbers:
-        """Return how fast each body goes to the left of each gate (g, n) [m/s], without its turning."""
-        return self._to_the_left(self.body_velocity, self.start_velocity)
-
-    def reach(self, h: float) -> float:
-        """Return how far anything can come in a step at these speeds [m]."""
+    def _reach(self, longest: float) -> float:
+        """Return how far anything can come in so many seconds at these speeds [m]."""
         speeds = (self.body_velocity, self.start_velocity, self.end_velocity)
-        return 2.0 * h * float(sum(np.abs(v).max(initial=0.0) for v in speeds))
+        return 2.0 * longest * float(sum(np.abs(v).max(initial=0.0) for v in speeds))
 
     def _to_the_left(self, vectors: _Numbers, origins: _Numbers) -> _Numbers:
         way = self.end - self.start
         with np.errstate(divide="ignore", invalid="ignore"):
-            unit = way / np.hypot(way[:, 0], way[:, 1])[:, None]
-        part: _Numbers = unit[:, :1] * (vectors[:, 1] - origins[:, 1:])
-        part -= unit[:, 1:] * (vectors[:, 0] - origins[:, :1])
+            unit = way / np.hypot(way[..., 0], way[..., 1])[..., None]
+        part: _Numbers = unit[..., :1] * (vectors[..., None, :, 1] - origins[..., 1:])
+        part -= unit[..., 1:] * (vectors[..., None, :, 0] - origins[..., :1])
         return part
 
     def sides(self, known: NDArray[np.int8]) -> NDArray[np.int8]:
-        """Return on which sides of gates bodies are (gates, bodies); on a gate itself, what is ``known``."""
-        with np.errstate(invalid="ignore"):
-            left, right = self.distance > self.width, self.distance < -self.width
-        sides: NDArray[np.int8] = np.where(left, np.int8(1), np.where(right, np.int8(-1), known))
-        return sides
+        """Return on which sides of gates bodies are (t, g, n); on a gate itself, where they were before.
 
-    def may_return(self, after: Moment, side: NDArray[np.int8], h: float) -> NDArray[np.bool_]:
-        """Whether a body on a side may have gone through a gate and come back until ``after`` (g, n)."""
-        close = np.abs(self.distance) < max(self.reach(h), after.reach(h))
+        At first that is what is ``known`` (g, n).
+        """
+        with np.errstate(invalid="ignore"):
+            sides = (self.distance > self.width).astype(np.int8) - (self.distance < -self.width)
+        sides[0] = np.where(sides[0] == 0, known, sides[0])
+        last = np.where(sides != 0, np.arange(len(sides))[:, None, None], 0)
+        return np.take_along_axis(sides, np.maximum.accumulate(last, axis=0), axis=0)
+
+    def may_return(self, side: NDArray[np.int8], spans: _Numbers) -> NDArray[np.bool_]:
+        """Whether bodies may have gone through gates and come back within each step (t - 1, g, n).
+
+        ``side`` is that on which they begin it, ``spans`` how long it is [s], an array (t - 1,).
+        """
+        distance = np.abs(self.distance)
+        close: NDArray[np.bool_] = distance[:-1] < self._reach(float(spans.max()))
         if not close.any():
             return close
-        leaving, arriving = self.rate(), after.rate()
+        rate, h = self._to_the_left(self.body_velocity, self.start_velocity), spans[:, None, None]
+        leaving, arriving = rate[:-1], rate[1:]
         turns = (side * leaving < 0.0) & (side * arriving > 0.0)
-        reaches = np.abs(leaving) * h > np.abs(self.distance)
-        return close & turns & reaches & (np.abs(arriving) * h > np.abs(after.distance))
+        reaches = np.abs(leaving) * h > distance[:-1]
+        return close & turns & reaches & (np.abs(arriving) * h > distance[1:])
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,18 +118,17 @@ class Roots:
 class Passage:
     """The paths of some bodies past a gate each, through one step."""
 
-    def __init__(self, before: Moment, after: Moment, gate: _Whole, body: _Whole, h: float) -> None:
-        self._body = StepPath.between(
-            before.body[body], after.body[body], before.body_velocity[body], after.body_velocity[body], h
+    def __init__(self, moments: Moments, step: int, gate: _Whole, body: _Whole, h: float) -> None:
+        both = slice(step, step + 2)
+        parts = (
+            (moments.body[both, body], moments.body_velocity[both, body]),
+            (moments.start[both, gate], moments.start_velocity[both, gate]),
+            (moments.end[both, gate], moments.end_velocity[both, gate]),
         )
-        self._start, self._end = (
-            StepPath.between(one[gate], two[gate], first[gate], last[gate], h)
-            for one, two, first, last in (
-                (before.start, after.start, before.start_velocity, after.start_velocity),
-                (before.end, after.end, before.end_velocity, after.end_velocity),
-            )
+        self._body, self._start, self._end = (
+            StepPath.between(place[0], place[1], velocity[0], velocity[1], h) for place, velocity in parts
         )
-        self._first = np.sign(before.distance[gate, body])
+        self._first = np.sign(moments.distance[step, gate, body])
 
     def roots(self) -> Roots:
         """Return when each body was on the line of its gate."""

@@ -64,9 +64,10 @@ class MediumSystem(ForceSystem):
         rows = rows[(layout.place[rows] >= 0) & (state.bodies.inverse_mass[rows] > 0.0)]
         gravity = np.array(self._gravity(state))
         fluids, outlines = self._fluids(state, media, gravity), _outlines(state, rows)
-        reach = state.bodies.shapes.reach[rows]
+        # The torque on a body that cannot turn is taken by what keeps it so.
+        own = state.bodies.shapes.reach[rows], state.bodies.inverse_inertia[rows] > 0.0, outlines
         parameters = np.concatenate(
-            ((0.0, *gravity), fluids.ravel(), np.column_stack((reach, outlines)).ravel(), np.zeros(ROOM))
+            ((0.0, *gravity), fluids.ravel(), np.column_stack(own).ravel(), np.zeros(ROOM))
         )
         where = np.stack((layout.place[rows], layout.turn[rows]), axis=1)
         behind = 2 + where.size

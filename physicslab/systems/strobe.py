@@ -5,7 +5,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Strobe, Transform, Velocity
+from physicslab.components import Strobe, Transform
+from physicslab.state.samples import ends_of_steps, motion_of_rows
 from physicslab.state.state import State
 from physicslab.systems.system import Stage, System, at
 from physicslab.systems.within_step import StepPath
@@ -27,6 +28,7 @@ class StrobeSystem(System):
     """
 
     needs = (Strobe, Transform)
+    sampled = True
 
     def __init__(self) -> None:
         self._entities: _Rows = np.zeros(0, np.int64)
@@ -34,7 +36,7 @@ class StrobeSystem(System):
         # Flashes, a few rows each: entity, time, x, y, angle. None is changed, so key frames share them.
         self._flashes: tuple[NDArray[np.float64], ...] = ()
         self._until = -np.inf
-        self._before: tuple[NDArray[np.float64], NDArray[np.float64]] | None = None
+        self._before: NDArray[np.float64] | None = None
 
     def attach(self, state: State) -> None:
         """Follow the bodies there are, and drop the records of those that are gone."""
@@ -59,11 +61,11 @@ class StrobeSystem(System):
         """Note where the bodies are at the beginning of the step."""
         if state.time + h < self._until:  # the clock was set back: what was recorded is in the future
             self._flashes, self._until = (), -np.inf
-        self._before = self._motion(state)
+        self._before = motion_of_rows(state, self._rows)
 
     @at(Stage.FINISH)
     def record(self, state: State, h: float) -> None:
-        """Note where the bodies were at the multiples of their intervals within the step."""
+        """Note where the bodies were at the multiples of their intervals within the steps."""
         if self._before is None:
             return
         interval = state.table(Strobe)["interval"][self._rows]
@@ -78,18 +80,17 @@ class StrobeSystem(System):
         body = np.repeat(np.arange(len(many)), many)
         turn = np.arange(len(body)) - np.repeat(np.cumsum(many) - many, many) + np.repeat(first, many)
         times = turn * interval[body]
-        place, rate = self._motion(state)
-        path = StepPath.between(self._before[0], place, self._before[1], rate, h)
-        where = path.at(body, np.clip((times - start) / h, 0.0, 1.0))
+        ends = ends_of_steps(state.samples, state, self._rows, start, end, h)
+        begins = np.append(start, ends.times[:-1])
+        step = np.searchsorted(begins[1:], times + _CLOCK_ERROR * interval[body], side="right")
+        span = ends.spans[step]
+        motion = np.concatenate((self._before[None], ends.motion))
+        before, after = motion[step, body], motion[step + 1, body]
+        path = StepPath.between(before[:, :3], after[:, :3], before[:, 3:], after[:, 3:], span)
+        where = path.at(np.arange(len(body)), np.clip((times - begins[step]) / span, 0.0, 1.0))
         flash = np.column_stack((self._entities[body], times, where))
         self._flashes = (*self._flashes, flash)
         self._forget_old(state)
-
-    def _motion(self, state: State) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Return places with angles (n, 3) and how fast they change."""
-        transform, velocity, rows = state.table(Transform), state.table(Velocity), self._rows
-        place = np.column_stack((transform["position"][rows], transform["angle"][rows]))
-        return place, np.column_stack((velocity["linear"][rows], velocity["angular"][rows]))
 
     def _forget_old(self, state: State) -> None:
         """Drop the flashes that are too old to be shown, and the oldest where there are too many."""

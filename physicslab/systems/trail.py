@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Trail, Transform
+from physicslab.state.samples import ends_of_steps
 from physicslab.state.state import State
 from physicslab.systems.system import Stage, System, at
 
@@ -66,19 +67,14 @@ class TrailSystem(System):
     @at(Stage.FINISH)
     def record(self, state: State, h: float) -> None:
         """Note where the bodies are at the end of the step, or of each of the steps that were one call."""
-        now, samples = state.time + h, state.samples
+        now = state.time + h
         if now <= self._now:  # the clock was set back: what was recorded is in the future
             self._time[:] = np.nan
             self._now = state.time
         self._length = state.table(Trail)["length"][self._rows]
-        places = state.table(Transform)["position"][self._rows]
-        if samples is not None and (between := samples.between(self._now, now)):
-            own, there = np.flatnonzero(np.isin(self._rows, samples.rows)), np.isin(samples.rows, self._rows)
-            passed = places.copy()
-            for number in between:
-                passed[own] = samples.motion[number, there, :2]
-                self._note(float(samples.times[number]), passed)
-        self._note(now, places)
+        ends = ends_of_steps(state.samples, state, self._rows, self._now, now, h)
+        for time, motion in zip(ends.times.tolist(), ends.motion, strict=True):
+            self._note(time, motion[:, :2])
 
     def _note(self, now: float, places: NDArray[np.float64]) -> None:
         """Note the ``places`` [m] (n, 2) at a time [s]."""

@@ -30,8 +30,8 @@ class StepPath:
         Places; the first two columns are x and y, an angle may follow.
     before, after : float64 arrays (n, d)
         Their rates of change [1/s].
-    h : float
-        The length of the step [s].
+    h : float64 array (n, 1)
+        The length of each one's step [s].
     corner : float64 array (n,)
         The moment of the impact as a share of the step, 0 where there must have been several; NaN for smooth
         paths.
@@ -41,20 +41,21 @@ class StepPath:
     last: _Numbers
     before: _Numbers
     after: _Numbers
-    h: float
+    h: _Numbers
     corner: _Numbers
 
     @classmethod
     def between(
-        cls, first: _Numbers, last: _Numbers, before: _Numbers, after: _Numbers, h: float
+        cls, first: _Numbers, last: _Numbers, before: _Numbers, after: _Numbers, span: _Numbers | float
     ) -> StepPath:
-        """Return paths between two moments, of places (n, 2) [m] and velocities (n, 2) [m/s] at both."""
+        """Return paths through steps of a ``span`` each [s], of places and velocities (n, d) at both ends."""
+        h = np.broadcast_to(span, len(first))[:, None]
         change = (after - before)[:, :2]
         size = np.einsum("ij,ij->i", change, change)
         speed = np.maximum(*(np.einsum("ij,ij->i", v[:, :2], v[:, :2]) for v in (before, after)))
         missed = after[:, :2] * h - (last - first)[:, :2]
         with np.errstate(divide="ignore", invalid="ignore"):
-            corner = np.einsum("ij,ij->i", missed, change) / (size * h)
+            corner = np.einsum("ij,ij->i", missed, change) / (size * h[:, 0])
         bent = (size > _BEND**2 * speed) & (np.abs(corner - 0.5) > _EVEN)
         inside = (corner > 0.0) & (corner < 1.0)
         return cls(first, last, before, after, h, np.where(bent, np.where(inside, corner, 0.0), np.nan))
@@ -62,7 +63,8 @@ class StepPath:
     def at(self, points: NDArray[np.int64], share: _Numbers) -> _Numbers:
         """Return where points (k,) are after a share (k,) of the step each (k, d)."""
         p, q, corner = self.first[points], self.last[points], self.corner[points]
-        u, v = self.h * self.before[points], self.h * self.after[points]
+        h = self.h[points]
+        u, v = h * self.before[points], h * self.after[points]
         s = share[:, None]
         smooth = (p + s * u) + s * s * ((3.0 * (q - p) - 2.0 * u - v) + s * (2.0 * (p - q) + u + v))
         bend = corner[:, None]
@@ -77,9 +79,10 @@ class StepPath:
         """Return how fast points (k,) are after a share (k,) of the step each (k, d)."""
         p, q, corner = self.first[points], self.last[points], self.corner[points]
         before, after = self.before[points], self.after[points]
-        u, v = self.h * before, self.h * after
+        h = self.h[points]
+        u, v = h * before, h * after
         s = share[:, None]
-        smooth = (u + s * (2.0 * (3.0 * (q - p) - 2.0 * u - v) + 3.0 * s * (2.0 * (p - q) + u + v))) / self.h
+        smooth = (u + s * (2.0 * (3.0 * (q - p) - 2.0 * u - v) + 3.0 * s * (2.0 * (p - q) + u + v))) / h
         straight = np.where(s < corner[:, None], before, after)
         velocity: _Numbers = np.where(np.isnan(corner)[:, None], smooth, straight)
         return velocity

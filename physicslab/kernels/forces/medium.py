@@ -254,9 +254,9 @@ ROOM = 2 * OUTLINE + CUTS + SUMS
 def medium(q, v, span, force, parameters, indices):  # type: ignore[no-untyped-def]
     """Add to each body the weight of the fluid that it displaces, upwards, and the drag against the flow.
 
-    ``parameters``: STORED, GX, GY; of each medium its numbers and outline; of each body its reach and
-    outline; and room. ``indices``: how many bodies and media; two of each body: where x and the angle are;
-    then the accounts of fields and of damping, and where drag is kept by itself.
+    ``parameters``: STORED, GX, GY; of each medium its numbers and outline; of each body its reach, 1 if it
+    can turn or else 0, and its outline; and room. ``indices``: how many bodies and media; two of each body:
+    where x and the angle are; then the accounts of fields and of damping, and where drag is kept by itself.
 
     Buoyancy acts at the centroid of the common area. It is the force of the energy rho times the integral of
     (g . x - level) over that area, and of the pressure of the fluid at those parts of its own outline that
@@ -268,12 +268,13 @@ def medium(q, v, span, force, parameters, indices):  # type: ignore[no-untyped-d
     )  # fmt: skip
     gx, gy, stored = parameters[GX], parameters[GY], 0.0
     first = FIRST + media * (NUMBERS + OUTLINE)
-    room = first + bodies * (1 + OUTLINE)
+    room = first + bodies * (2 + OUTLINE)
     near, region, cuts, sums = room, room + OUTLINE, room + 2 * OUTLINE, room + 2 * OUTLINE + CUTS
     for p in range(bodies):
         i, turn = indices[2 + 2 * p], indices[3 + 2 * p]
-        own = first + p * (1 + OUTLINE)
+        own = first + p * (2 + OUTLINE)
         reach, x, y, vx, vy, spin = parameters[own], q[i], q[i + 1], v[i], v[i + 1], v[turn]
+        turns = parameters[own + 1]
         placed = False
         for m in range(media):
             at = FIRST + m * (NUMBERS + OUTLINE)
@@ -285,14 +286,14 @@ def medium(q, v, span, force, parameters, indices):  # type: ignore[no-untyped-d
             if away >= reach:
                 continue
             if not placed:
-                place_outline(parameters, own + 1, 0.0, 0.0, q[turn], parameters, near)
+                place_outline(parameters, own + 2, 0.0, 0.0, q[turn], parameters, near)
                 placed = True
             psi = gx * x + gy * y - parameters[at + LEVEL]
             immerse(parameters, near, region, cuts, sums, psi, gx, gy, reach, away <= -reach)
             area, mx, my = parameters[sums + AREA], parameters[sums + MX], parameters[sums + MY]
             rho, length = parameters[at + DENSITY], parameters[sums + LENGTH]
             fx, fy = -rho * area * gx, -rho * area * gy
-            torque = -rho * (mx * gy - my * gx)
+            torque = -turns * rho * (mx * gy - my * gx)
             stored += rho * (psi * area + gx * mx + gy * my)
             force[i] += fx
             force[i + 1] += fy
@@ -311,7 +312,7 @@ def medium(q, v, span, force, parameters, indices):  # type: ignore[no-untyped-d
             slowed = (
                 parameters[at + VISCOSITY] * (parameters[sums + S2] - length * (sx * sx + sy * sy)) * spin
             )
-            torque = sx * fy - sy * fx - slowed
+            torque = turns * (sx * fy - sy * fx - slowed)
             force[i] += fx
             force[i + 1] += fy
             force[turn] += torque
