@@ -25,7 +25,7 @@ from physicslab.stepping.keyframe import Keyframe
 from physicslab.stepping.plan import StepPlan, default_plan
 from physicslab.stepping.planning import plan_for_jumps
 from physicslab.stepping.run import refuse_unnamed, run_through, strides
-from physicslab.stepping.select import Steppers, choose, remake, restart, resume
+from physicslab.stepping.select import Steppers, choose, remake, restart, resume, settle
 from physicslab.stepping.small import is_small
 from physicslab.stepping.soft import Soft
 from physicslab.stepping.stepper import Advance, Advancer
@@ -349,16 +349,17 @@ class World(Facade):
             follow_rows(self)
             derive_masses(self)
             check_edits(self)
-            plan = None if self.entity_index.motion_edited else self.plan
-            self.plan, self.steppers = remake(self, self.schedule, plan)
-            self.revision += 1
-            self.motion_edits += self.entity_index.motion_edited
-            if self.entity_index.motion_edited:
-                self.fastest_rates.clear()
-            self.stale = self.entity_index.motion_edited = False
+            self.schedule.remake(self)
             if not self.entity_index.synchronise():
-                warn_of_what_stands_still(self.schedule)
-                return
+                break  # else springs and joints went with their bodies: rows are numbered again
+        plan = None if self.entity_index.motion_edited else self.plan
+        self.plan, self.steppers = settle(self, self.schedule, plan)
+        self.revision += 1
+        self.motion_edits += self.entity_index.motion_edited
+        if self.entity_index.motion_edited:
+            self.fastest_rates.clear()
+        self.stale = self.entity_index.motion_edited = False
+        warn_of_what_stands_still(self.schedule)
 
     def _follow_islands(self) -> None:
         """Choose systems and steppers again, and the method, where all islands have become one."""
@@ -403,10 +404,7 @@ class World(Facade):
             book_account(self, self.schedule.forces)
 
     def install(self, *systems: System) -> None:
-        """Add systems to this world, after those of the same stage.
-
-        So a window can show a world that was made without one.
-        """
+        """Add systems to this world, after those of the same stage, as a window does that shows it."""
         self.schedule.extend(systems)
         self.stale = True
         self.entity_index.motion_edited |= any(system.acts_within_step() for system in systems)
