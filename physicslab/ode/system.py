@@ -227,8 +227,7 @@ class OdeSystem:
         layout, transform, velocity = self.layout, state.table(Transform), state.table(Velocity)
         if not self._every_row:
             self.hold_together()
-            self.find_joint_forces(state)
-        self._write(state, self.q, self.v)
+        self.write(state)
         self._book(state)
         n = layout.moving_count
         if self._low is not None:
@@ -339,6 +338,12 @@ class OdeSystem:
         if self._error is not None:
             error, self._error = self._error, None
             raise error
+
+    def write(self, state: State) -> None:
+        """Put places and rates, and the forces of joints with them, into the tables."""
+        if not self._every_row:
+            self.find_joint_forces(state)
+        self._write(state, self.q, self.v)
 
     def _write(self, state: State, q: NDArray[np.float64], v: NDArray[np.float64]) -> None:
         layout, transform, velocity = self.layout, state.table(Transform), state.table(Velocity)
