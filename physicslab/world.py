@@ -25,13 +25,13 @@ from physicslab.stepping.keyframe import Keyframe
 from physicslab.stepping.plan import StepPlan, default_plan
 from physicslab.stepping.planning import plan_for_jumps
 from physicslab.stepping.run import refuse_unnamed, run_through, strides
-from physicslab.stepping.select import Steppers, choose, remake, restart, resume
+from physicslab.stepping.select import Steppers, choose, remake, restart, resume, settle
 from physicslab.stepping.small import is_small
 from physicslab.stepping.soft import Soft
 from physicslab.stepping.stepper import Advance, Advancer
 from physicslab.stepping.undo import StepTransaction, go_back
 from physicslab.systems.accelerate import AccelerateSystem
-from physicslab.systems.breaking import BreakSystem, load_of
+from physicslab.systems.breaking import load_of
 from physicslab.systems.integrate import warn_of_what_stands_still
 from physicslab.systems.schedule import Schedule
 from physicslab.systems.standard import standard_systems
@@ -145,13 +145,16 @@ class World(Facade):
         try:
             return self._attempt(h, steps, 1.0)
         except Overloaded as found:
-            at = time_of_break(self._load_after, h, found.load)
-        start = self.time
+            if not self.islands.divides:
+                raise  # the world that this one is an island of divides the step
+            safe, load = found.steps - 1, found.load
+        if steps > 1:
+            return self.advance(h, max(1, safe))
+        at, start = time_of_break(self._load_after, h, load), self.time
         self._attempt(at, 1, math.inf)
         if h - at < MIN_TIME:
             return 1
-        self.steps -= 1
-        self.time = start + at
+        self.steps, self.time = self.steps - 1, start + at
         try:
             self._follow(numbers=True)
             return self.advance(h - at, 1)
@@ -160,7 +163,6 @@ class World(Facade):
 
     def _load_after(self, h: float) -> float:
         """Return the load of joints after ``h`` seconds, and go back."""
-        self._follow(numbers=True)
         try:
             self._attempt(h, 1, -math.inf)
         except Overloaded as found:
@@ -169,19 +171,19 @@ class World(Facade):
 
     def _attempt(self, h: float, steps: int, bears: float) -> int:
         """Advance, unless that ends with a load on joints beyond ``bears`` that is known at any time."""
+        if self.stale:  # as where a step was undone
+            self._follow(numbers=True)
         with StepTransaction(self, self._motion):
             self._prepare(h)
             made = self._advance(h, steps)
             if self.account.is_open:
                 close_account(self, self.schedule.forces)
-            if self.joints.joints and bears < math.inf and self.schedule.find(BreakSystem) is not None:
-                load = load_of(self)
-                if load > bears and not any(isinstance(part.stepper, Soft) for part in self.parts):
-                    raise Overloaded(load)
+            load = load_of(self) if bears < math.inf and (steps > 1 or self.islands.divides) else 0.0
+            if load > bears and not any(isinstance(part.stepper, Soft) for part in self.parts):
+                raise Overloaded(made.steps, load)
             self.schedule.run(Stage.FINISH, self, h * made.steps)
         self.steps += made.steps
-        self._forces_at = self.steps, self.motion_edits
-        self.step_divisions = made.divisions
+        self._forces_at, self.step_divisions = (self.steps, self.motion_edits), made.divisions
         return made.steps
 
     def _prepare(self, h: float) -> None:
@@ -327,7 +329,9 @@ class World(Facade):
                 joined = self.joints.refresh(self.entity_index)
                 if joined and self.sleep.count:
                     wake_all(self)
-                if joined or not self.steppers.hold(self):
+                if joined and not self.schedule.holds(self):
+                    self.plan, self.steppers = remake(self, self.schedule, None)
+                elif joined or not self.steppers.hold(self):
                     self._choose()
                 self.islands.follow(self)
                 self._follow_islands()
@@ -349,16 +353,17 @@ class World(Facade):
             follow_rows(self)
             derive_masses(self)
             check_edits(self)
-            plan = None if self.entity_index.motion_edited else self.plan
-            self.plan, self.steppers = remake(self, self.schedule, plan)
-            self.revision += 1
-            self.motion_edits += self.entity_index.motion_edited
-            if self.entity_index.motion_edited:
-                self.fastest_rates.clear()
-            self.stale = self.entity_index.motion_edited = False
+            self.schedule.remake(self)
             if not self.entity_index.synchronise():
-                warn_of_what_stands_still(self.schedule)
-                return
+                break  # else springs and joints went with their bodies: rows are numbered again
+        plan = None if self.entity_index.motion_edited else self.plan
+        self.plan, self.steppers = settle(self, self.schedule, plan)
+        self.revision += 1
+        self.motion_edits += self.entity_index.motion_edited
+        if self.entity_index.motion_edited:
+            self.fastest_rates.clear()
+        self.stale = self.entity_index.motion_edited = False
+        warn_of_what_stands_still(self.schedule)
 
     def _follow_islands(self) -> None:
         """Choose systems and steppers again, and the method, where all islands have become one."""
@@ -395,18 +400,14 @@ class World(Facade):
     def book_edits(self) -> None:
         """Book what was changed since the last step, or since this was called last, in the accounts.
 
-        Each step does so first. Called before and after an edit it keeps that apart from what a hand has
-        done between the same two steps.
+        Each step does so first; around an edit it keeps that apart from what a hand does in the same step.
         """
         with self.active():
             self._follow(numbers=True)
             book_account(self, self.schedule.forces)
 
     def install(self, *systems: System) -> None:
-        """Add systems to this world, after those of the same stage.
-
-        So a window can show a world that was made without one.
-        """
+        """Add systems to this world, after those of the same stage, as a window does that shows it."""
         self.schedule.extend(systems)
         self.stale = True
         self.entity_index.motion_edited |= any(system.acts_within_step() for system in systems)
@@ -429,8 +430,7 @@ class World(Facade):
     def add_up_forces(self) -> None:
         """Update ``bodies.force`` and ``.torque`` to the forces that act.
 
-        The stages of a step leave them there; a compiled flow does not, and they are added up at the present
-        state. The state of motion is not changed.
+        The stages of a step leave them there, and a compiled flow does not. The motion is not changed.
         """
         if self.islands.members or not all(stepper.leaves_forces for stepper in self.steppers.usable):
             with self.active():

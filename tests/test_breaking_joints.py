@@ -2,6 +2,7 @@
 
 import json
 import math
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +14,7 @@ from physicslab.components import Gear, Mass, Pin, Rod, Rope, Shape, Transform, 
 from physicslab.diagnostics.energy import measure_account
 from physicslab.diagnostics.step_watch import StepWatch
 from physicslab.diagnostics.warnings import find_warnings
-from physicslab.ecs.config import SimulationConfig
+from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.prefabs import box
 from physicslab.stepping.keyframe import Keyframe
 from physicslab.systems.breaking import breaks_of
@@ -154,3 +155,54 @@ def test_what_joints_contradict_about_can_be_saved_and_read_again(tmp_path: Path
     assert any("contradicts other joints" in line for line in told) and not any(
         "substeps" in line for line in told
     )
+
+
+def rods_that_break(kind: str) -> World:
+    """Return a world with rods that break on the way: alone, beside what bounces, or in a heap."""
+    world = World(
+        physics=PhysicsConfig(bounds=None if kind == "smooth" else (-2, 0, 2, 5)),
+        simulation=SimulationConfig(contacts="soft" if kind == "soft" else "auto"),
+    )
+    for x, bears in ((500.0, 2.5), (520.0, 2.6)) if kind != "soft" else ():
+        bob = world.spawn(Transform((x + 1.0, 0.0)), Velocity(), Mass(2.0))
+        world.spawn(Rod(b=bob, length=1.0, anchor_a=(x, 0.0), breaks=bears * 2.0 * 9.81))
+    boxes = [box(world, (-1.5 + 0.6 * k, 0.5 + 0.2 * k), width=0.3, height=0.3) for k in range(6)]
+    if kind == "soft":
+        for one, other in pairwise(boxes):
+            world.spawn(Rod(one, other, breaks=15.0))
+    return world
+
+
+@pytest.mark.parametrize("kind", ["smooth", "rigid", "soft"])
+def test_joints_break_in_runs_of_many_steps_as_in_single_ones(
+    kind: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    worlds = [rods_that_break(kind) for _ in range(2)]
+    for _ in range(90):
+        worlds[0].step()
+    advance, calls = World.advance, 0
+
+    def counted(world: World, h: float, steps: int) -> int:
+        nonlocal calls
+        calls += world is worlds[1]
+        return advance(world, h, steps)
+
+    monkeypatch.setattr(World, "advance", counted)
+    worlds[1].run(steps=90)
+    expected, broken = (breaks_of(world.schedule.systems, world.time) for world in worlds)
+    assert 2 <= len(broken) == len(expected) and calls < 45
+    for one, other in zip(broken, expected, strict=True):
+        assert one[1:3] == other[1:3] and one.time == pytest.approx(other.time, abs=1e-11)
+    columns = [(world.table(Transform)["position"], world.table(Velocity)["linear"]) for world in worlds]
+    exact = 0.0 if kind == "soft" else 1e-9
+    for one, other in zip(*columns, strict=True):
+        assert np.allclose(one, other, rtol=0.0, atol=exact)
+
+
+def test_a_joint_that_is_told_on_the_way_to_break_does() -> None:
+    world = swing()
+    world.component(world.entity("rope"), Rope).breaks = None
+    world.run(seconds=0.1)
+    world.component(world.entity("rope"), Rope).breaks = 1.0
+    world.run(seconds=0.1)
+    assert [one.label for one in breaks_of(world.schedule.systems, world.time)] == ["rope"]

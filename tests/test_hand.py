@@ -6,9 +6,9 @@ from dataclasses import replace
 import pytest
 from desk import FRAME, empty_world
 
-from physicslab.components import Held, Mass, Transform, Velocity
+from physicslab.components import Drag, Held, Mass, Thrust, Transform, Velocity
 from physicslab.diagnostics.energy import measure_account
-from physicslab.ecs.config import WindowConfig
+from physicslab.ecs.config import SimulationConfig, WindowConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.prefabs import box, circle
 from physicslab.view.window.hand import Hand
@@ -211,3 +211,15 @@ def test_what_the_hand_pushes_gets_no_more_than_its_strength(world: World) -> No
     hand.take(world, ball, Vector2(), 0.0)
     lead(hand, world, [Vector2(0.1 * n, 0) for n in range(1, 61)])
     assert 0.0 < world.component(heavy, Velocity).linear.x < 20.0 * 9.81 / 1000.0
+
+
+@pytest.mark.parametrize("contacts", ["auto", "soft"])
+def test_what_acts_on_a_body_in_the_hand_alone_is_no_work_of_the_hand(contacts: str) -> None:
+    world = World(simulation=SimulationConfig(contacts=contacts))
+    rocket, _ = circle(world, (0.0, 3.0), velocity=(0.7, 0.3)), circle(world, (1.0, 5.0))
+    for part in (Thrust((3.0, 2.0), 0.5), Drag(1.0), Held()):
+        world.add(rocket, part)
+    world.run(steps=20)
+    account = measure_account(world).energy
+    for cause in ("hand", "thrust", "damping", "numerical"):
+        assert abs(account[cause]) < 1e-12, cause

@@ -13,6 +13,7 @@ from physicslab.diagnostics.energy import measure_energy, measure_momentum
 from physicslab.ecs.component import InvalidValue
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.vector import Vector2
+from physicslab.prefabs import circle
 from physicslab.systems.gravity import GravitySystem
 from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.spring import SpringSystem
@@ -204,6 +205,17 @@ def test_a_spring_goes_with_its_body_when_that_was_the_newest() -> None:
     world.remove(gone)
     world.step()
     assert world.entities() == [kept] and not world.has(kept, Spring)
+
+
+def test_another_body_may_come_before_the_next_step_when_that_of_a_spring_is_gone() -> None:
+    world = World()
+    ends = [circle(world, (float(x), 0.0), radius=0.2) for x in range(2)]
+    spring = world.spawn(Spring(ends[0], ends[1]))
+    world.step()
+    world.remove(ends[0])
+    new = circle(world, (5.0, 5.0), radius=0.2)
+    world.step()
+    assert world.entities() == [ends[1], new] and not world.has(spring, Spring)
 
 
 @pytest.mark.parametrize(

@@ -14,6 +14,7 @@ from physicslab.components import Mass, Shape, Thrust, Transform, Velocity
 from physicslab.diagnostics.energy import measure_account
 from physicslab.ecs.component import InvalidValue
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
+from physicslab.files.writer import write_scene
 from physicslab.integrators import INTEGRATORS
 from physicslab.lab.accuracy.catalogue import PROBLEMS
 from physicslab.prefabs import box
@@ -150,3 +151,17 @@ def test_the_rocket_circles() -> None:
     world.run(seconds=2.0 * math.pi)
     place = world.component(world.entity("circling"), Transform).position
     assert tuple(place) == pytest.approx((2.0, 0.0), abs=1e-9)
+
+
+def test_how_a_rocket_moves_beside_soft_contacts_depends_not_on_when_it_is_opened() -> None:
+    world = World(simulation=SimulationConfig(contacts="soft"))
+    box(world, (0.0, -5.0), width=9.0, height=1.0, static=True)
+    rocket = box(world, (0.0, 3.0), width=0.4, height=0.2)
+    world.add(rocket, Thrust((0.0, 5.0), frame="body", at=(0.1, 0.0)))
+    world.run(steps=5)
+    assert world.component(rocket, Velocity).angular > 0.1
+    again = load_scene(write_scene(world))
+    for one in (world, again):
+        one.run(steps=5)
+    assert again.plan == world.plan
+    assert again.component(rocket, Transform).position == world.component(rocket, Transform).position

@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from physicslab.components import Transform
 from physicslab.kernels.joints.measured import AX, BX, TURN_A
-from physicslab.state.joint_figures import errors_of_rows, measured_terms, rows_of_terms
+from physicslab.state.joint_figures import errors_of_rows, measured_terms
 from physicslab.state.joint_rows import Role
 from physicslab.state.state import State
 from physicslab.world import World
@@ -32,7 +32,7 @@ def closing_places(state: State, least: float, *, limits: bool = False) -> tuple
         Whether limits are kept too, and ropes are no longer than they are.
     """
     joints, bodies, transform = state.joints, state.bodies, state.table(Transform)
-    owner = rows_of_terms(state)
+    owner = state.joints.row
     position, angle = transform["position"].copy(), transform["angle"].copy()
     give = np.sqrt(np.stack((bodies.inverse_mass, bodies.inverse_mass, bodies.inverse_inertia), axis=1))
     for _ in range(_TURNS):

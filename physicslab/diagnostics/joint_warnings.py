@@ -15,9 +15,7 @@ from physicslab.kernels.joints.blocks import ACTIVE, GIVES, ROW, STATE
 from physicslab.kernels.joints.measured import AX, BX, BY, TURN_A
 from physicslab.state.joint_figures import (
     figures_of,
-    joints_of_rows,
     measured_terms,
-    rows_of_terms,
 )
 from physicslab.state.joint_rows import Measure, Role
 from physicslab.stepping.plan import WITHOUT_END
@@ -69,14 +67,14 @@ def joint_warnings(world: World) -> Iterator[ModelWarning]:
         yield ModelWarning.about(world, joints[worst].entity, what, stretch, "m", limit, setting)
     elif dependent.any():
         first = int(np.argmax(dependent))
-        joint = joints[int(joints_of_rows(world)[first])]
+        joint = joints[int(world.joints.owner[first])]
         if joint.kind is Rod and not measured_terms(world)[first, AX : BY + 1].any():
             what = sentence("ends_in_one_place")
             yield ModelWarning.about(world, joint.entity, what, setting=sentence("a_pin"))
             return
         blocked = dependent & (world.joints.role == Role.MOTOR)
         if blocked.any():
-            joint = joints[int(joints_of_rows(world)[int(np.argmax(blocked))])]
+            joint = joints[int(world.joints.owner[int(np.argmax(blocked))])]
             yield ModelWarning.about(world, joint.entity, sentence("blocked_motor"))
             return
         what = sentence("redundant")
@@ -88,7 +86,7 @@ def joint_warnings(world: World) -> Iterator[ModelWarning]:
 
 def _moves(world: World) -> NDArray[np.bool_]:
     """Return of each joint (n,) whether a force can move what it joins; a hand may let go of it."""
-    bodies, joints, owner = world.bodies, world.joints, joints_of_rows(world)[rows_of_terms(world)]
+    bodies, joints, owner = world.bodies, world.joints, world.joints.owner
     free = (bodies.inverse_mass > 0.0) | (bodies.inverse_inertia > 0.0) | world.table(Held).present
     moves = np.zeros(len(joints.joints), np.bool_)
     np.logical_or.at(moves, owner, free[joints.a] | free[joints.b])
@@ -97,7 +95,7 @@ def _moves(world: World) -> NDArray[np.bool_]:
 
 def _acts(world: World) -> NDArray[np.bool_]:
     """Return which rows (n,) do not hold what no force moves, as the angle of a body without inertia."""
-    terms, bodies, joints, owner = measured_terms(world), world.bodies, world.joints, rows_of_terms(world)
+    terms, bodies, joints, owner = measured_terms(world), world.bodies, world.joints, world.joints.row
     free = np.stack((bodies.inverse_mass, bodies.inverse_mass, bodies.inverse_inertia), axis=1) > 0.0
     free |= world.table(Held).present[:, None]
     holds, acts = np.zeros((2, len(joints)), np.bool_)
@@ -133,7 +131,7 @@ def _bounces(world: World) -> Iterator[ModelWarning]:
     if not (isinstance(world.stepper, Soft) and world.collisions):
         return
     joints = world.joints
-    holds = joints.role[rows_of_terms(world)] == Role.HOLD
+    holds = joints.role[world.joints.row] == Role.HOLD
     ends = np.unique(np.concatenate((joints.a[holds], joints.b[holds])))
     bouncing = ends[
         (world.table(Material)["restitution"][ends] > 0.0) & (world.bodies.inverse_mass[ends] > 0.0)
@@ -159,7 +157,7 @@ def _dependent(world: World) -> NDArray[np.bool_]:
     joints = world.joints
     if not isinstance(world.stepper, Soft):
         return joints.dependent
-    owner, (_, state, _) = joints_of_rows(world), joints.buffers
+    owner, (_, state, _) = world.joints.owner[: len(world.joints)], joints.buffers
     gives, acts = np.zeros((2, len(joints) + 1))
     for place in (1, 0):  # nodes of one row have none in the second place, which is that of another
         gives[joints.blocks.nodes[:-1, ROW] + place] = np.where(

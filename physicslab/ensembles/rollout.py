@@ -111,6 +111,7 @@ class Rollout:
         schedule = self._world.schedule
         fields = _BETWEEN_IMPACTS if isinstance(stepper, EventDriven) else _ANY_TIME
         watched = any(not system.sampled for stage in AROUND for system in schedule.at(stage))
+        watched |= self._world.joints.breakable
         return bool(
             length.steps and self._fields <= fields and not watched and not len(self._world.remainders.keys)
         )

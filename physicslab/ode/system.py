@@ -19,7 +19,7 @@ from physicslab.kernels.forces.inverse_square import PLAIN_LIMIT
 from physicslab.kernels.joints.layout import FIRST
 from physicslab.kernels.joints.rows import constrain, forces_of, project, set_going
 from physicslab.ode.budget import BudgetLayout, book_in_python
-from physicslab.state.packed import StateLayout, share_steepness
+from physicslab.state.packed import StateLayout, share_steepness, way_and_size
 from physicslab.state.remainders import NO_REMAINDERS, Remainders, coordinate_keys
 from physicslab.state.state import State
 from physicslab.systems.joint_forces import pivots_of
@@ -227,8 +227,7 @@ class OdeSystem:
         layout, transform, velocity = self.layout, state.table(Transform), state.table(Velocity)
         if not self._every_row:
             self.hold_together()
-            self.find_joint_forces(state)
-        self._write(state, self.q, self.v)
+        self.write(state)
         self._book(state)
         n = layout.moving_count
         if self._low is not None:
@@ -261,7 +260,7 @@ class OdeSystem:
         left = direct_entry(project)(q, self.v.copy(), np.zeros(n), np.zeros(n), *self.joints)
         if q.tobytes() == self.q.tobytes():
             return None
-        moved, size = _way_and_size(self.q[:n], q[:n])
+        moved, size = way_and_size(self.q[:n], q[:n])
         return q if moved > _PUT * size and left <= _APART * moved else None
 
     def place(self, state: State, q: NDArray[np.float64]) -> None:
@@ -278,7 +277,7 @@ class OdeSystem:
         direct_entry(project)(self.q, self.v, *low, *self.joints)
         if before.tobytes() == self.q[:n].tobytes():  # which is found in a tenth of the time
             return False
-        moved, size = _way_and_size(before, self.q[:n])
+        moved, size = way_and_size(before, self.q[:n])
         return moved > _APART * size
 
     def find_joint_forces(self, state: State) -> None:
@@ -339,6 +338,12 @@ class OdeSystem:
         if self._error is not None:
             error, self._error = self._error, None
             raise error
+
+    def write(self, state: State) -> None:
+        """Put places and rates, and the forces of joints with them, into the tables."""
+        if not self._every_row:
+            self.find_joint_forces(state)
+        self._write(state, self.q, self.v)
 
     def _write(self, state: State, q: NDArray[np.float64], v: NDArray[np.float64]) -> None:
         layout, transform, velocity = self.layout, state.table(Transform), state.table(Velocity)
@@ -442,9 +447,3 @@ def steady_turn(
     free = state.bodies.inverse_mass[rows] > 0.0
     turned = spin * np.where(free, -np.expm1(-c * time) / c, time)
     return angle + turned, np.where(free, spin * np.exp(-c * time), spin)
-
-
-def _way_and_size(before: NDArray[np.float64], after: NDArray[np.float64]) -> tuple[float, float]:
-    """Return by how much coordinates (n,) moved at most, and the largest of those that did."""
-    moved = before != after
-    return float(np.abs(after - before).max(initial=0.0)), float(np.abs(before[moved]).max(initial=0.0))

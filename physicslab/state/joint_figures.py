@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Transform
-from physicslab.kernels.joints.measured import AX, BX, FIGURES, VALUE, measure_terms
+from physicslab.kernels.joints.measured import AX, BX, FIGURES, VALUE, find_loads, measure_terms
 from physicslab.state.joint_rows import Measure, Role
 from physicslab.state.state import State
 
@@ -46,29 +46,17 @@ def measured_terms(state: State, position: Numbers | None = None, angle: Numbers
     return found
 
 
-def rows_of_terms(state: State) -> NDArray[np.int64]:
-    """Return the row (m,) that each term is of."""
-    rows = np.arange(len(state.joints))
-    return np.concatenate((rows, rows[state.joints.second >= 0]))
-
-
 def errors_of_rows(state: State, terms: Numbers) -> Numbers:
     """Return the quantities g (n,) of all rows by what their terms measure."""
     errors = -state.joints.offset
-    np.add.at(errors, rows_of_terms(state), state.joints.scale * terms[:, VALUE])
+    np.add.at(errors, state.joints.row, state.joints.scale * terms[:, VALUE])
     return errors
-
-
-def joints_of_rows(state: State) -> NDArray[np.int64]:
-    """Return the number (n,) of the joint that each row is of."""
-    joints = state.joints.joints
-    return np.repeat(np.arange(len(joints)), [joint.size for joint in joints])
 
 
 def forces_on(state: State, row: int) -> dict[int, Numbers]:
     """Return the force (2,) [N] of each joint, by its number, that holds the body of a row."""
     terms, pulls = _pulls(state)
-    joints, owner, found = state.joints, joints_of_rows(state)[rows_of_terms(state)], dict[int, Numbers]()
+    joints, owner, found = state.joints, state.joints.owner, dict[int, Numbers]()
     for ends, gradient in ((joints.a, terms[:, AX : AX + 2]), (joints.b, terms[:, BX : BX + 2])):
         for n in np.flatnonzero(ends == row).tolist():
             joint = int(owner[n])
@@ -84,30 +72,37 @@ def forces_on_all(state: State) -> Numbers:
     return total
 
 
+def is_overloaded(
+    state: State, forces: Numbers | None = None, places: tuple[Numbers, Numbers] | None = None
+) -> bool:
+    """Find the loads of joints where bodies are; return whether any joint bears less than its own.
+
+    By the ``forces`` (n,) of rows [N or N m], which are those of the joints unless others are given; or at
+    ``places`` (rows, 2) [m] with angles (rows,) [rad].
+    """
+    joints, transform = state.joints, state.table(Transform)
+    if not joints.joints:
+        return False
+    state.compile((find_loads,))
+    position, angle = places or (transform["position"], transform["angle"])
+    return bool(find_loads(joints.plain, position, angle, joints.force if forces is None else forces))
+
+
 def _pulls(state: State) -> tuple[Numbers, Numbers]:
     """Return what terms measure, and the force along the gradient of each [N or N m]."""
-    return measured_terms(state), state.joints.scale * state.joints.force[rows_of_terms(state)]
+    return measured_terms(state), state.joints.scale * state.joints.force[state.joints.row]
 
 
 def figures_of(state: State) -> JointFigures:
     """Return the figures of all joints."""
-    joints, count = state.joints, len(state.joints.joints)
-    (terms, pulls), rows = _pulls(state), joints_of_rows(state)
-    owner = rows[rows_of_terms(state)]
-    turns, b = joints.measure == Measure.ANGLE, np.array([joint.b for joint in joints.joints], np.int64)
-    force, torque = np.zeros((count, 2)), np.zeros(count)
-    for ends, x, sign in ((joints.a, AX, -1.0), (joints.b, BX, 1.0)):
-        # On the world it is what A gets with the other sign.
-        share = np.where(ends == b[owner], 1.0, np.where(b[owner] == 0, -1.0, 0.0)) * (
-            (ends > 0) | (b[owner] > 0)
-        )
-        np.add.at(force, owner, (share * pulls)[:, None] * terms[:, x : x + 2])
-        np.add.at(torque, owner, np.where(turns & (ends == b[owner]), sign * pulls, 0.0))
+    joints, terms = state.joints, measured_terms(state)
+    is_overloaded(state)
+    force, torque = joints.loads[:, :2].copy(), joints.loads[:, 2].copy()
+    rows, angles = joints.owner[: len(joints)], joints.measure[: len(joints)] == Measure.ANGLE
     error = errors_of_rows(state, terms)
     error = np.where(joints.role == Role.LIMIT, np.minimum(error, 0.0), error)
     square = np.where(joints.role == Role.MOTOR, 0.0, error * error)
-    angles = turns[: len(joints)]
-    stretch, twist, largest = np.zeros((3, count))
+    stretch, twist, largest = np.zeros((3, len(joints.joints)))
     np.add.at(stretch, rows[~angles], square[~angles])
     np.add.at(twist, rows[angles], square[angles])
     np.maximum.at(largest, rows[~angles], joints.largest[~angles])

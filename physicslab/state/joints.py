@@ -69,11 +69,21 @@ class Joints:
         At the end of the last step, or as its mean [N or N m].
     largest : float64 array (n,)
         The largest error so far, as far as soft constraints solved it [m or rad].
+    row, owner : int64 arrays (m,)
+        The row that each term is of, and the number of its joint.
+    held : int64 array (j,)
+        The row of each joint's body B.
+    bears : float64 array (j, 2)
+        The force [N] and the torque [N m] beyond which each joint breaks; (0, 2) where none can.
+    loads : float64 array (j, 3)
+        Room for the force on each joint's B [N] and the torque on it [N m].
     buffers : tuple of float64 arrays
         Room for what is computed of the ends, nodes and entries of blocks
         (:mod:`physicslab.kernels.joints.blocks`).
     plain : tuple
         The arguments of kernels that work on rows.
+    watched : bool
+        Whether a system removes joints that do not bear their load.
     beside_contacts : bool
         Whether contacts are solved at all, and joints with them.
     dependent : bool array (n,)
@@ -89,7 +99,7 @@ class Joints:
 
     def __init__(self) -> None:
         self._take([], [])
-        self._settings, self.beside_contacts = list[bytes](), False
+        self._settings, self.beside_contacts, self.watched = list[bytes](), False, False
         self._entities = np.zeros(0, np.int64)
         self._joined: tuple[Any, ...] = ()
         self.wholes: dict[int, int] = {}
@@ -111,6 +121,11 @@ class Joints:
             np.array([row[n] for row in rows], np.float64) for n in range(2, 5)
         )
         self.impulse, self.force, self.largest = np.zeros((3, len(rows)))
+        first = np.arange(len(rows))
+        self.row = np.concatenate((first, first[self.second >= 0]))
+        self.owner = np.repeat(np.arange(len(joints)), [joint.size for joint in joints])[self.row]
+        self.held = np.array([joint.b for joint in joints], np.int64)
+        self.bears, self.loads = np.zeros((0, 2)), np.zeros((len(joints), 3))
         self._set_blocks(NO_BLOCKS)
         self.edges, self.apart = np.zeros((2, 0, 2), np.int64)
         self.dependent = np.zeros(len(rows), np.bool_)
@@ -119,7 +134,8 @@ class Joints:
         self.blocks, self.buffers = blocks, buffers_of(blocks)
         self.plain: Plain[JointArguments] = (
             self.measure, self.a, self.b, self.anchor_a, self.anchor_b, self.axis, self.scale, self.role,
-            self.offset, self.target, self.strongest, self.impulse, self.largest, *blocks, *self.buffers,
+            self.offset, self.target, self.strongest, self.impulse, self.largest, self.row, self.owner,
+            self.held, self.bears, self.loads, *blocks, *self.buffers,
         )  # fmt: skip
 
     def __len__(self) -> int:
@@ -165,6 +181,8 @@ class Joints:
             apart.update((one, other) for other in whole if one < other)
         self.wholes = {int(entities[one]): int(entities[min(whole)]) for one, whole in welded.items()}
         self._take(joints, rows)
+        bears = np.array([_bounds_of(index, joint) for joint in joints]).reshape(-1, 2)
+        self.bears = bears if (bears < np.inf).any() else self.bears
         moves = index.table(Velocity).present
         own_rows = [range(joint.first, joint.first + joint.size) for joint in joints]
         self._set_blocks(order_rows(rows, own_rows, moves.tolist()))
@@ -190,6 +208,11 @@ class Joints:
     def settings(self) -> bytes:
         """The numbers of all joints that rows were made of, bit by bit."""
         return b"".join(self._settings)
+
+    @property
+    def breakable(self) -> bool:
+        """Whether any joint can break, and a system looks for it."""
+        return self.watched and len(self.bears) > 0
 
     def _columns(self, index: EntityIndex) -> list[bytes]:
         """Return the same column by column: in one piece they take many times as long."""
@@ -250,6 +273,16 @@ class Joints:
             impulses = held.get((joint.entity, joint.kind.__name__), ())
             if len(impulses) == joint.size:
                 self.impulse[joint.own] = impulses
+
+
+def _bounds_of(index: EntityIndex, joint: Joint) -> tuple[float, ...]:
+    """Return the force [N] and the torque [N m] that a joint bears, infinite where that is not given."""
+    table, row = index.table(joint.kind), index.row_of[joint.entity]
+    known = {spec.name for spec in joint.kind.FIELDS}
+    return tuple(
+        float(table[name][row]) if name in known and table[f"{name}_given"][row] else np.inf
+        for name in ("breaks", "breaks_torque")
+    )
 
 
 def _placed(joined: Joined, row: Row) -> Row:

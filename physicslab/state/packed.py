@@ -203,3 +203,9 @@ def turned_anchors(
 ) -> NDArray[np.float64]:
     """Return the column ``anchors`` of springs, turned with the bodies at their ends (n, 2) [m]."""
     return rotated(state.table(Spring)[anchors][springs], state.table(Transform)["angle"][end])
+
+
+def way_and_size(before: NDArray[np.float64], after: NDArray[np.float64]) -> tuple[float, float]:
+    """Return by how much coordinates (n,) moved at most, and the largest of those that did."""
+    moved = before != after
+    return float(np.abs(after - before).max(initial=0.0)), float(np.abs(before[moved]).max(initial=0.0))

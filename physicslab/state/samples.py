@@ -137,9 +137,10 @@ class Samples:
 
     def take(self, state: Entities, time: float) -> None:
         """Take a sample of the state as it is, at a time [s], if one is due then."""
-        done = self._done(time)
-        if not done % self.stride and abs(time - self._start - done * self.dt) <= _LATE * self.dt:
-            self._write(state, done // self.stride, time)
+        place, after = divmod(self._done(time), self.stride)
+        late = time - self._start - place * self.stride * self.dt
+        if not after and abs(late) <= _LATE * self.dt and 0 <= place - self._first < len(self.times):
+            self._write(state, place, time)
 
     def finish(self, state: Entities, time: float) -> None:
         """Take a sample at the end of a run, at a time [s]."""

@@ -1,5 +1,6 @@
 """When a joint breaks within a step: the moment at which its load reaches what it bears."""
 
+import math
 from collections.abc import Callable
 
 _LOCATED = 1e-11
@@ -13,13 +14,15 @@ class Overloaded(Exception):
 
     Attributes
     ----------
+    steps : int
+        The number of that step among those of the call.
     load : float
-        The largest load of any joint, as a share of what that bears.
+        The largest load of any joint, as a share of what that bears; infinite where it was not found.
     """
 
-    def __init__(self, load: float) -> None:
-        super().__init__(load)
-        self.load = load
+    def __init__(self, steps: int, load: float = math.inf) -> None:
+        super().__init__(steps, load)
+        self.steps, self.load = steps, load
 
 
 def time_of_break(load_after: Callable[[float], float], h: float, load: float) -> float:

@@ -13,10 +13,12 @@ from physicslab.integrators import Exhausted, StepTooSmall
 from physicslab.integrators.dop853 import MAX_COSTLY
 from physicslab.ode.closed_form import NoClosedForm
 from physicslab.ode.system import OdeSystem, steady_turn
+from physicslab.state.joint_figures import is_overloaded
 from physicslab.state.masses import Diverged, check_finite
 from physicslab.state.samples import Samples
 from physicslab.state.state import State
 from physicslab.stepping.accounting import put_together
+from physicslab.stepping.breaks import Overloaded
 from physicslab.stepping.fastest_body import changes_fast
 from physicslab.stepping.method import tolerance_for
 from physicslab.stepping.plan import StepPlan
@@ -84,6 +86,8 @@ class Flow(Stepper):
         adaptive = self._joined and self._method.chooses_steps
         whole = _FINEST if adaptive else 1  # in a part
         longest = _PROJECTED * whole if adaptive else 1 if self._joined else parts * steps
+        if state.joints.breakable and (state.samples is None or state.samples.stride > 1):
+            longest = whole  # loads are known at the ends of steps that are sampled
         most = MAX_COSTLY * max(1, math.ceil(h / _COSTLY_S))
         made, span, left = 0, longest, most  # evaluations that are left to the step that is being made
         try:
@@ -95,6 +99,9 @@ class Flow(Stepper):
                 self._ode.most = _SPAN if divides else left if adaptive else None
                 try:
                     self._flow(state, h / parts * span / whole, max(1, span // whole), divides=divides)
+                except Overloaded as found:
+                    found.steps += made // (parts * whole)
+                    raise
                 except Exhausted:
                     span, left = span // 2, left - _SPAN
                     continue
@@ -103,6 +110,9 @@ class Flow(Stepper):
                         return Advance(made // whole)  # the next call begins where it fails
                     raise
                 made += span
+                step, rest = divmod(made, parts * whole)
+                if state.joints.breakable and not rest and step < steps and is_overloaded(state):
+                    raise Overloaded(step)
                 if state.samples is not None:
                     state.samples.take(state, start + made * h / (parts * whole))
                 spent, begun = state.force_evaluations - begun, state.force_evaluations
@@ -159,11 +169,32 @@ class Flow(Stepper):
             raise changes_fast(state, self._schedule.forces, error) from error
         if state.samples is not None:
             self._keep(state, state.samples, places, after, packed)
+            if state.joints.breakable and len(places):
+                self._check_loads(state, after, packed)
         ode.scatter(state, span)
         self._schedule.note(IntegrateSystem.__name__, steps, time.perf_counter_ns() - start)
         for system in ode.forces:
             self._schedule.note(system.name, made, 0)  # their time is part of the loop's
         state.force_evaluations += made
+
+    def _check_loads(
+        self, state: State, after: NDArray[np.float64], packed: NDArray[np.float64]
+    ) -> None:  # fmt: skip
+        """Raise where a joint bears less than its load at one of the times after now (m,) [s].
+
+        Coordinates and rates (2, m, n) are ``packed``.
+        """
+        ode, n, clock = self._ode, self._ode.layout.moving_count, self._ode.layout.clock
+        end, steepness = (ode.q, ode.v), ode.steepness.copy()
+        ode.q, ode.v = ode.q.copy(), ode.v.copy()
+        try:
+            for k, span in enumerate(after.tolist()):
+                ode.q[:n], ode.v[:n], ode.q[clock] = packed[0, k], packed[1, k], state.time + span
+                ode.write(state)
+                if is_overloaded(state):
+                    raise Overloaded(k + 1)
+        finally:
+            (ode.q, ode.v), ode.steepness[:] = end, steepness
 
     def _sample_aside(self, state: State, after: NDArray[np.float64], packed: NDArray[np.float64]) -> None:
         """Find coordinates and rates (2, m, n) at times after now (m,) [s]; the motion is divided by none."""

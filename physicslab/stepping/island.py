@@ -1,6 +1,6 @@
 """An island: some bodies of a world, and a world of their own that advances them."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -16,6 +16,7 @@ from physicslab.ecs.table import Table
 from physicslab.kernels import near_counts
 from physicslab.state.remainders import coordinate_keys
 from physicslab.state.state import State
+from physicslab.stepping.breaks import Overloaded
 from physicslab.stepping.flow import Flow
 from physicslab.stepping.partition import movable_in
 from physicslab.stepping.plan import StepPlan
@@ -75,7 +76,7 @@ class Island:
 
     def follow_rows(self, state: State) -> None:
         """Find its rows again in the whole world."""
-        index = self.state.entity_index
+        index, self.state.joints.watched = self.state.entity_index, state.joints.watched
         self.own, self.there = index.rows_of(self.entities), state.entity_index.rows_of(self.entities)
         self.every = np.flatnonzero(index.entities)
         self.every_there = state.entity_index.rows_of(index.entities[self.every])
@@ -104,8 +105,9 @@ class Island:
             return world.schedule.holds(own) and choose_plan(own, world.schedule) == world.plan
 
     def go(self, state: State, time: float, h: float, steps: int, driven: Rows) -> int:
-        """Advance by ``steps`` steps of ``h`` seconds from ``time`` [s] on; return the parts of each.
+        """Advance by ``steps`` steps of ``h`` seconds from ``time`` [s] on; return how many it made.
 
+        Those are fewer where a joint bears less than its load at the end of the next one.
         Its bookings and counts are added to those of the whole world, and samples are taken of its bodies and
         of ``driven`` rows.
         """
@@ -119,7 +121,12 @@ class Island:
                 self.world.synchronise()
                 # Smooth motion depends on where it is divided, and that on what else there is.
                 single = self.touches and isinstance(self.world.stepper_for(h), Flow)
-                done += self.world.advance(h, 1 if single else steps - done)
+                try:
+                    done += self.world.advance(h, 1 if single else steps - done)
+                except Overloaded as found:
+                    steps = done + found.steps - 1
+                    if not steps:
+                        raise
                 own.time = time + done * h
         if samples is not None and part is not None:
             samples.join(part, *self._with(state, driven))
@@ -131,7 +138,7 @@ class Island:
         state.substeps = max(state.substeps, own.substeps)
         for name, rate in own.fastest_rates.items():
             state.fastest_rates[name] = max(rate, state.fastest_rates.get(name, 0.0))
-        return own.step_divisions
+        return done
 
     def _with(self, state: State, driven: Rows) -> tuple[Rows, Rows]:
         """Return its bodies' and ``driven`` rows, in its world and in the whole one."""
@@ -149,6 +156,11 @@ class Island:
         if self.state.sleep.on:
             for name in ("asleep", "rest", "slowest"):
                 getattr(state.sleep, name)[self.there] = getattr(self.state.sleep, name)[self.own]
+
+
+def in_order(members: Iterable[Island]) -> tuple[Island, ...]:
+    """Return islands in the order of their first bodies."""
+    return tuple(sorted(members, key=lambda island: int(island.entities[0])))
 
 
 def fill(state: State, part: State, entities: Rows, fixed: Rows) -> None:

@@ -2,13 +2,13 @@
 
 Bodies that forces couple, or that may meet, are one island (:mod:`physicslab.stepping.partition`); what is
 fixed, or moves at a given speed, belongs to every one. While there are several, each is a world that holds
-the columns of its bodies, made as a loaded file is. It follows edits of the whole world, and writes back how
-its bodies move. So the bits of an island are those that it has alone.
+the columns of its bodies, follows edits of the whole world, and writes back how its bodies move. So the bits
+of an island are those that it has alone.
 """
 
 import math
 import weakref
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -22,6 +22,7 @@ from physicslab.state.masses import Diverged
 from physicslab.state.remainders import Remainders
 from physicslab.state.state import State
 from physicslab.stepping import partition
+from physicslab.stepping.breaks import Overloaded
 from physicslab.stepping.island import (
     Island,
     KeptIsland,
@@ -29,6 +30,7 @@ from physicslab.stepping.island import (
     Rows,
     copy_joints,
     fill,
+    in_order,
     join_logs,
     kept_of,
     numbers_of,
@@ -42,13 +44,11 @@ from physicslab.systems.system import Stage, System
 
 type Make = Callable[[Sequence[System], PhysicsConfig, SimulationConfig], Part]
 
-EXAMINED_S = 2.0
-"""At each multiple of this time [s] it is looked whether an island has come apart."""
-FEW_EXAMINED = 2
-"""Every how many of these times one is that has the best steppers already, as few bodies do."""
-_LATE = 1e-9
-"""Share of that time by which the clock, a sum of rounded steps, may be late."""
-_NEVER = 1 << 60
+EXAMINED_S, FEW_EXAMINED = 2.0, 2
+"""At each multiple of this time [s] it is looked whether an island has come apart; only at each so many of
+these, if it has the best steppers already, as few bodies do."""
+_LATE, _NEVER = 1e-9, 1 << 60
+"""Share of that time by which the clock, a sum of rounded steps, may be late; steps that are never made."""
 
 
 class Islands:
@@ -117,6 +117,8 @@ class Islands:
         Where one fails, those before it are counted; islands are then found again.
         """
         opened = state.account.is_open
+        if any(island.touches and island.state.joints.breakable for island in self.members):
+            steps = 1  # where a joint breaks, the call is made again, which contacts are not the same after
         try:
             return self._advance(state, h, steps)
         except BaseException as error:
@@ -154,16 +156,19 @@ class Islands:
         start, made, parts = state.time, 0, 1
         state.substeps = state.simulation.substeps
         smooth = [island for island in self.members if not island.touches]
+        smooth.sort(key=lambda island: not island.state.joints.breakable)  # these may make fewer steps
         try:
             for island in smooth:
-                parts = max(parts, island.go(state, start, h, steps, self._driven(state, island)))
+                wanted, steps = steps, island.go(state, start, h, steps, self._driven(state, island))
+                if steps < wanted and island is not smooth[0]:
+                    raise Overloaded(steps + 1)
             while made < steps and self.members:
                 touching = [island for island in self.members if island.touches]
                 count = min(self.steps_ahead(state, h), steps - made) if touching else steps - made
                 logged = [island.state.contacts.logged for island in touching]
                 for island in touching:
-                    driven = self._driven(state, island)
-                    parts = max(parts, island.go(state, state.time, h, count, driven))
+                    island.go(state, state.time, h, count, self._driven(state, island))
+                parts = max(parts, *(island.state.step_divisions for island in self.members))
                 join_logs(state, [island.state for island in touching], logged)
                 made += count
                 state.time = start + made * h
@@ -301,7 +306,7 @@ class Islands:
             entities, sources = island.state.entity_index.entities, [island.state]
             apart = [entities[group] for group in groups] if len(groups) > 1 else []
             members += [self._island(state, part, sources) for part in apart] or [island]
-        self.members = _in_order(members)
+        self.members = in_order(members)
         self._begin(state)
         return True
 
@@ -323,7 +328,7 @@ class Islands:
                 entities = np.sort(np.concatenate([island.entities for island in group]))
                 group = [self._island(state, entities, [island.state for island in group])]
             members += group
-        self.members = _in_order(members)
+        self.members = in_order(members)
         if all_one:
             self.give_back(state)
             self.joined, self.why_one = True, sentence("came_near")
@@ -368,7 +373,7 @@ class Islands:
         """Go on with islands that were made elsewhere; without any the world is one."""
         self.due, self.paused, self._examined = False, False, _period(state)
         self._survey(state)
-        self.members = _in_order(members)
+        self.members = in_order(members)
         if self.members:
             self._begin(state)
 
@@ -438,11 +443,6 @@ class Islands:
         """Let the world be one, as it is; islands are found again before its next step."""
         state.contacts.source, self.members, self._left = None, (), b""
         self.find_again()
-
-
-def _in_order(members: Iterable[Island]) -> tuple[Island, ...]:
-    """Return islands in the order of their first bodies."""
-    return tuple(sorted(members, key=lambda island: int(island.entities[0])))
 
 
 def _period(state: State) -> int:

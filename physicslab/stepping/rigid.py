@@ -25,11 +25,13 @@ from physicslab.kernels.wide import slots
 from physicslab.ode.system import OdeSystem
 from physicslab.state.chain_links import segment_of_link
 from physicslab.state.contacts import Contacts
+from physicslab.state.joint_figures import is_overloaded
 from physicslab.state.masses import check_finite
 from physicslab.state.samples import Samples
 from physicslab.state.state import State
 from physicslab.stepping.accounting import put_together
 from physicslab.stepping.ballistic import pairs_that_may_meet
+from physicslab.stepping.breaks import Overloaded
 from physicslab.stepping.flow import NotSmooth
 from physicslab.stepping.plan import StepPlan
 from physicslab.stepping.rigid_motion import MadeStep, RigidMotion
@@ -140,6 +142,8 @@ class Rigid(Stepper):
                 break
             last, made = step, made + 1
             rests = step.rests and figures is not None
+            if state.joints.breakable and made < steps:
+                self._check_loads(scene, state, step, made)
             if state.samples is not None:
                 self._sample(state.samples, state.time + (made - 1) * h, h)
         self._resting = None
@@ -156,6 +160,13 @@ class Rigid(Stepper):
             state.substeps = state.simulation.substeps
             self._schedule.run_others(ResolveSystem, Stage.IMPACT, state, h)
         return Advance(made, parts)
+
+    def _check_loads(self, scene: tuple[Any, ...], state: State, last: MadeStep, made: int) -> None:
+        """Raise where a joint bears less than its load at the end of the ``last`` of the steps made."""
+        q, n = self._ode.q, len(self._ode.layout.moving)
+        self._find_joint_forces(scene, state, last)
+        if is_overloaded(state, None, (q[: 2 * n].reshape(n, 2), q[2 * n : 3 * n])):
+            raise Overloaded(made)
 
     def _figures(self, state: State, h: float, steps: int | None = None) -> tuple[object, ...] | None:
         """Return all that a step of ``h`` seconds depends on; ``None`` if it may on more.

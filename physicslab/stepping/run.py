@@ -242,10 +242,10 @@ def _advance(
 
 
 def _leap(world: Stepped, h: float, parts: int, steps: int) -> int:
-    """Advance by ``parts`` times ``h`` at once, which count as ``steps``; return those.
+    """Advance by ``parts`` times ``h`` at once, which count as ``steps``; return how many were made.
 
     Where that fails it is halved, until the one step that cannot be made is found; the world is then as it
-    was before that step. Where the stepper makes some of the steps and leaves the rest, others make these.
+    was before that step.
     """
     start, made = world.time, 0
     try:
@@ -254,13 +254,8 @@ def _leap(world: Stepped, h: float, parts: int, steps: int) -> int:
         if steps == 1:
             raise
     if made:
-        while made < parts:
-            world.time = start + made * h
-            world.synchronise()
-            made += world.advance(h, parts - made)
-        world.time = start
-        world.steps += steps - parts
-        return steps
+        world.steps += steps - parts if made == parts else 0
+        return steps if made == parts else made
     first = steps // 2
     halves = ((h, first, first), (h, parts - first, steps - first))
     if parts == 1:
@@ -268,7 +263,10 @@ def _leap(world: Stepped, h: float, parts: int, steps: int) -> int:
         halves = ((own, 1, first), (h - own, 1, steps - first))
     for span, count, counted in halves:
         world.synchronise()
-        _leap(world, span, count, counted)
-        world.time += span * count
+        done = _leap(world, span, count, counted)
+        world.time += span * (count if done == counted else done)
+        made += done
+        if done < counted:
+            break
     world.time = start
-    return steps
+    return made

@@ -120,6 +120,11 @@ def remake(state: State, schedule: Schedule, plan: StepPlan | None) -> tuple[Ste
     Whether bodies may sleep depends on how collisions are found.
     """
     schedule.remake(state)
+    return settle(state, schedule, plan)
+
+
+def settle(state: State, schedule: Schedule, plan: StepPlan | None) -> tuple[StepPlan, Steppers]:
+    """Choose steppers and the method for systems that were just chosen, and these again where they change."""
     while True:
         state.has_forces = bool(schedule.forces)
         chosen = choose(state, schedule, plan)

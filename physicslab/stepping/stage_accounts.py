@@ -155,7 +155,11 @@ class StageAccounts:
         self._book_work(state, ~bodies.sub_integrated, way)
         if self._driven is not None:
             rows = np.concatenate((np.repeat(self._driven, 2), self._driven))
-            sums[HAND, ENERGY] -= float(bodies.pull[rows] @ way[rows])
+            pull = bodies.pull[rows]
+            for force in self._free:
+                if force.couples_nothing:  # whatever it gives to a driven body comes to no other
+                    pull -= self._pulls[force][rows]
+            sums[HAND, ENERGY] -= float(pull @ way[rows])
 
     def begin_impacts(self, state: State) -> None:
         """Note where bodies of a flow are before impacts at their own times move them."""

@@ -29,6 +29,7 @@ from physicslab.kernels.solver import soft
 from physicslab.kernels.solver.finer import needed_factor
 from physicslab.kernels.wide import slots
 from physicslab.kernels.wide.graph_colour import MIN_WIDE
+from physicslab.state.joint_figures import is_overloaded
 from physicslab.state.masses import check_finite
 from physicslab.state.samples import sampled
 from physicslab.state.solid import solid_rows
@@ -147,9 +148,9 @@ class Substeps:
                     self._end_step(state, why, span)
                     if state.samples is not None:
                         state.samples.take(state, span.start + made * span.dt)
-                    if span.finer or all_asleep(state):
+                    if span.finer or all_asleep(state) or self._overloaded(state, span):
                         break
-                elif why == soft.OTHER_SUBSTEPS:
+                elif why in (soft.OTHER_SUBSTEPS, soft.OVERLOADED):
                     break
                 elif why != soft.ALL:
                     began = span.start + made * span.dt
@@ -173,6 +174,11 @@ class Substeps:
         if span.finer and why != soft.ALL:
             state.contacts.substep_factor = self._needed_factor(state, span)
         return made if self._parts else steps
+
+    def _overloaded(self, state: State, span: Span) -> bool:
+        """Whether a joint has to break."""
+        acted = state.contacts.impulse_dt or span.h
+        return state.joints.breakable and is_overloaded(state, state.joints.impulse / acted)
 
     def _needed_factor(self, state: State, span: Span) -> int:
         """Return how many times as many substeps as configured the next step needs."""

@@ -1,20 +1,15 @@
 """Joints that break."""
 
-import math
-from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.ecs.sentences import sentence
-from physicslab.state.joint_figures import figures_of
-from physicslab.state.joints import Joint
+from physicslab.state.joint_figures import is_overloaded
 from physicslab.state.state import State
 from physicslab.systems.joint import remove_joint
 from physicslab.systems.system import Stage, System, at
-
-_BOUNDS = ("breaks", "breaks_torque")
 
 
 class Break(NamedTuple):
@@ -43,8 +38,14 @@ class BreakSystem(System):
         Those that broke, in order.
     """
 
+    sampled = True
+
     def __init__(self) -> None:
         self.broken: tuple[Break, ...] = ()
+
+    def attach(self, state: State) -> None:
+        """Let steps end where a joint does not bear its load."""
+        state.joints.watched = True
 
     def keep(self) -> tuple[NDArray[Any], ...]:
         """Return how many joints were broken, an array (1,)."""
@@ -56,50 +57,41 @@ class BreakSystem(System):
 
     def why_left_out(self, state: State) -> str | None:
         """Needed where a joint can break."""
-        return None if next(_breakable(state), None) is not None else sentence("no_breaking")
+        return None if state.joints.breakable else sentence("no_breaking")
 
     @at(Stage.FINISH)
     def remove(self, state: State, h: float) -> None:
         """Remove the joints that do not bear their load."""
         end = state.time + h
         self.broken = tuple(one for one in self.broken if one.time < end)  # the clock may have been set back
-        figures = figures_of(state)
-        forces, torques = np.hypot(*figures.force.T), np.abs(figures.torque)
-        numbers = {joint: number for number, joint in enumerate(state.joints.joints)}
-        for joint, bounds in list(_breakable(state)):
-            force, torque = float(forces[numbers[joint]]), float(torques[numbers[joint]])
-            beyond = force > bounds[0], torque > bounds[1]
-            if any(beyond):
+        if not is_overloaded(state):
+            return
+        joints = state.joints
+        loads, bears = _loads_of(state).tolist(), joints.bears.tolist()
+        for joint, (force, torque), bounds in zip(joints.joints, loads, bears, strict=True):
+            if force > bounds[0] or torque > bounds[1]:
                 label = state.label(joint.entity)
-                own = Break(end, joint.entity, joint.kind.__name__, force, torque * beyond[1], label)
+                turned = torque * (torque > bounds[1])
+                own = Break(end, joint.entity, joint.kind.__name__, force, turned, label)
                 self.broken = (*self.broken, own)
                 remove_joint(joint.entity, joint.kind)
 
 
-def _breakable(state: State) -> Iterator[tuple[Joint, tuple[float, ...]]]:
-    """Yield the joints that can break, each with the force [N] and the torque [N m] that it bears."""
-    for joint in state.joints.joints:
-        table, row = state.table(joint.kind), state.entity_index.row_of[joint.entity]
-        known = {spec.name for spec in joint.kind.FIELDS}
-        bounds = tuple(
-            float(table[name][row]) if name in known and table[f"{name}_given"][row] else math.inf
-            for name in _BOUNDS
-        )
-        if min(bounds) < math.inf:
-            yield joint, bounds
+def _loads_of(state: State) -> NDArray[np.float64]:
+    """Return the force [N] and the torque [N m] on each joint (j, 2), as they were found last."""
+    loads = state.joints.loads
+    return np.column_stack((np.hypot(loads[:, 0], loads[:, 1]), np.abs(loads[:, 2])))
 
 
 def load_of(state: State) -> float:
     """Return the largest load of any joint now, as a share of what that bears; 0 where none can break."""
-    figures = figures_of(state)
-    loads = np.stack((np.hypot(*figures.force.T), np.abs(figures.torque)), axis=1).tolist()
-    numbers = {joint: number for number, joint in enumerate(state.joints.joints)}
-    each = [
-        pair
-        for joint, bounds in _breakable(state)
-        for pair in zip(loads[numbers[joint]], bounds, strict=True)
-    ]
-    return max((load / bound if bound else math.inf for load, bound in each if load), default=0.0)
+    if not state.joints.breakable:
+        return 0.0
+    is_overloaded(state)
+    loads, bears = _loads_of(state), state.joints.bears
+    with np.errstate(divide="ignore"):
+        shares: NDArray[np.float64] = np.divide(loads, bears, out=np.zeros_like(loads), where=loads > 0.0)
+    return float(shares.max())
 
 
 def breaks_of(systems: tuple[System, ...], time: float) -> tuple[Break, ...]:

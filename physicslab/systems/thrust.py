@@ -10,6 +10,7 @@ from physicslab.kernels.accounts import THRUST
 from physicslab.kernels.forces.thrust import thrust
 from physicslab.state.packed import PackedForce, StateLayout
 from physicslab.state.state import State
+from physicslab.systems.drag import AT_REST
 from physicslab.systems.system import ForceSystem
 
 _WITH_BODY = FRAMES.index("body") + 1
@@ -53,7 +54,9 @@ class ThrustSystem(ForceSystem):
         """Return for each row how fast the force swings, and turns at its present spin [rad/s]."""
         table, rows = state.table(Thrust), state.batch(*self.needs).rows
         rates = np.zeros(len(state.entity_index))
-        spin = np.abs(state.table(Velocity)["angular"][rows]) * self._follows(state)
+        turns = self._follows(state) & (state.bodies.inverse_inertia[rows] > 0.0)
+        # That of a body that does not turn yet is told as well: no choice may go by when it was made.
+        spin = np.maximum(np.abs(state.table(Velocity)["angular"][rows]), AT_REST) * turns
         swings = np.where(table["force"][rows].any(axis=1) | (table["torque"][rows] != 0.0), 1.0, 0.0)
         rates[rows] = swings * (2.0 * np.pi * table["frequency"][rows] + spin)
         return rates * (state.bodies.inverse_mass > 0.0)

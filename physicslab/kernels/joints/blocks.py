@@ -52,7 +52,7 @@ _unsigned: Any = np.uint64
 
 
 class Joints(NamedTuple):
-    """The terms (m,) and rows (n,) of joints, as :class:`physicslab.state.joints.Joints` has them.
+    """The terms (m,), rows (n,) and joints (j,) as :class:`physicslab.state.joints.Joints` has them.
 
     Behind the ``largest`` error of each row so far: nodes, and what belongs to them, as
     :class:`physicslab.state.joint_order.Blocks` has it; and the room for what is computed of ends, nodes and
@@ -72,6 +72,11 @@ class Joints(NamedTuple):
     strongest: Numbers
     impulse: Numbers
     largest: Numbers
+    row: Rows
+    owner: Rows
+    held: Rows
+    bears: Vectors
+    loads: Vectors
     nodes: Tables
     terms: Tables
     body: Rows

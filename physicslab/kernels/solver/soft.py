@@ -34,6 +34,7 @@ from physicslab.kernels.forces.force_calls import add_forces
 from physicslab.kernels.forces.gravity import uniform_gravity
 from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple, named_shapes
 from physicslab.kernels.joints.blocks import Joints
+from physicslab.kernels.joints.measured import overloaded
 from physicslab.kernels.motion import FARTHEST, LARGEST, clear, drift, find_beyond, kick, pack_state, predict
 from physicslab.kernels.near_counts import ACTIVE, FOLLOWED, LEFT, OUTSIDE, ROUND, WIDE_COUNT
 from physicslab.kernels.ode.damped_flow import flow_forces
@@ -56,12 +57,12 @@ from physicslab.kernels.wide.graph_colour import ADDED, MIN_WIDE, SPARSE, add_to
 
 (
     ALL, PYTHON, PAIRS_STALE, BLOCKS_FULL, DIVERGED, WAKE_PENDING, SLEEP_PENDING, WALL_PENDING,
-    OTHER_SUBSTEPS,
-) = range(9)  # fmt: skip
+    OTHER_SUBSTEPS, OVERLOADED,
+) = range(10)  # fmt: skip
 """Why the loop ended: all steps are done; it is at a part that is Python's; the near pairs must be listed
 again; so many bodies touch that more blocks may be needed; the last step left a number that is not finite; a
 sleeping body is touched or pushed; at the end of a step, an island may fall asleep, or a body was beyond the
-bounds, or the next step needs another number of substeps."""
+bounds, or the next step needs another number of substeps, or a joint has to break."""
 (
     HOOK, DRIFT, UNIFORM, PACKED, KICK, PAIRS, FIND, WIDEN, WAKE, IMPACTS, PAIRS_AGAIN, LATER_IMPACTS,
     PREDICT, SOLVE, RELAX, OVERLAP, SPRINGS,
@@ -358,6 +359,9 @@ def _advance(
                 )
                 now = charge(cost, RESOLVE, now)
                 pending = ALL if needed == plan.finer else OTHER_SUBSTEPS
+            if pending == ALL and len(joints.bears) > 0:
+                acted = impulse_dt if impulse_dt > 0.0 else h
+                pending = OVERLOADED if overloaded(joints, position, angle, joints.impulse, acted) else ALL
             take_sample(motion, sampled, done)  # and again in Python where a step ends there
             if pending != ALL:
                 return pending, done, substep, part, finished, bounced, evaluations, impulse_dt
