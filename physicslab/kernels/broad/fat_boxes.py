@@ -19,6 +19,8 @@ _BOX_SHARE = 0.5 * CORNERWISE * (1.5 * CONTACT_MARGIN + WIDE_TOLERANCE * CACHE_T
 HIT_SHARE = 1.0
 """Share of its bounding radius by which the margin of a slow body is increased at most where many pairs have
 records."""
+_TURNS = 4.0
+"""Number of times h in which a body may turn on as it does; nowhere does it pass its bounding radius."""
 _TURN_SHARE = CORNERWISE * WIDE_TOLERANCE * CACHE_TURN_TOLERANCE
 """The same for points that are kept while it turns, as a share of its bounding radius."""
 
@@ -52,7 +54,8 @@ def left(
     moved_y = max(abs(y), abs(y + later * linear[i, 1])) - abs(fat[7, i])
     ux, uy = linear[i, 0] * h, linear[i, 1] * h
     ahead = math.sqrt(ux * ux + uy * uy) * (CORNERWISE if reach > radius else 1.0)
-    turned = (abs(motion.angle[i] - fat[2, i]) + abs(motion.angular[i]) * h) * (reach - radius)
+    turn, spin = motion.angle[i] - fat[2, i], motion.angular[i]
+    turned = min(max(abs(turn), abs(turn + later * spin)) + abs(spin) * h, 1.0) * (reach - radius)
     needed = _touching_distance(reach, radius, shapes.thin[i], speculative_margin)
     return not (max(moved_x, moved_y) + ahead + turned + needed <= fat[4, i] and reach == fat[3, i])
 
@@ -82,7 +85,7 @@ def all_inside(motion: Motion, shapes: Shapes, fat: Vectors, h: float, speculati
         moved_y = abs(places[2 * i + 1] - fat[1, i]) - abs(fat[7, i])
         ux, uy = velocities[2 * i] * h, velocities[2 * i + 1] * h
         ahead = math.sqrt(ux * ux + uy * uy) * (CORNERWISE if reach[i] > radius[i] else 1.0)
-        turned = (abs(angle[i] - fat[2, i]) + abs(angular[i]) * h) * (reach[i] - radius[i])
+        turned = min(abs(angle[i] - fat[2, i]) + abs(angular[i]) * h, 1.0) * (reach[i] - radius[i])
         needed = _touching_distance(reach[i], radius[i], thin[i], speculative_margin)
         inside = (max(moved_x, moved_y) + ahead + turned + needed <= fat[4, i]) | (reach[i] == 0.0)
         holds &= inside & (reach[i] == fat[3, i])
@@ -126,7 +129,7 @@ def fatten(
     around = max(2.0 * h * math.sqrt(vx * vx + vy * vy), min(13.0 * h * usual, hit_share * reach))
     ahead_x, ahead_y = max(6.5 * h * abs(vx) - 0.5 * around, 0.0), max(6.5 * h * abs(vy) - 0.5 * around, 0.0)
     margin = 0.08 * min(half_x, half_y) + around
-    margin += 2.0 * h * abs(motion.angular[i]) * (reach - radius)
+    margin += min(_TURNS * h * abs(motion.angular[i]), 1.0) * (reach - radius)
     margin += _touching_distance(reach, radius, shapes.thin[i], speculative_margin)
     fat[6, i], fat[7, i] = math.copysign(ahead_x, vx), math.copysign(ahead_y, vy)
     x, y = x + fat[6, i], y + fat[7, i]
