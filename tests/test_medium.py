@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from physicslab import World, load_scene, save_scene
-from physicslab.components import Mass, Medium, Shape, Transform, Velocity
+from physicslab.components import Mass, Medium, Rope, Shape, Transform, Velocity
 from physicslab.diagnostics.energy import measure_account, measure_energy
 from physicslab.ecs.component import InvalidValue
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
@@ -25,6 +25,7 @@ from physicslab.kernels import Numbers, kernel
 from physicslab.kernels.forces import medium as media
 from physicslab.prefabs import box
 from physicslab.state.shapes import cores_of
+from physicslab.stepping.soft import Soft
 from physicslab.systems.medium import _outlines
 from physicslab.systems.standard import standard_systems
 
@@ -359,3 +360,40 @@ def test_a_medium_that_reaches_no_body_of_a_flow_is_packed_all_the_same() -> Non
     )
     none = np.zeros(0, np.int64)
     assert _outlines(world, none).shape == (0, media.OUTLINE)
+
+
+def heap(world: World) -> list[int]:
+    """Spawn a floor and boxes that fall on each other."""
+    box(world, (40.0, -0.5), width=10.0, height=1.0, static=True)
+    return [box(world, (40.0 + 0.2 * n, 0.6 + 1.1 * n), width=1.0, height=1.0) for n in range(4)]
+
+
+@pytest.mark.parametrize("viscosity", [0.0, 50.0])
+def test_a_body_comes_into_a_medium_beside_contacts_as_without_any(viscosity: float) -> None:
+    alone, beside = pool(viscosity=viscosity), pool(viscosity=viscosity, contacts="soft")
+    expected = float_in(alone, Shape.circle(0.2), 1.5, 60.0)
+    ball = float_in(beside, Shape.circle(0.2), 1.5, 60.0)
+    beside.spawn(Rope(ball, heap(beside)[0], length=100.0))  # slack: else it were an island, and smooth
+    beside.run(steps=10)
+    assert not beside.bodies.sub_integrated.any()
+    beside.run(steps=80)
+    alone.run(steps=90)
+    assert isinstance(beside.stepper, Soft) and beside.contacts.active > 0
+    assert beside.bodies.sub_integrated.tolist().count(True) == 1
+    found, right = beside.component(ball, Transform).position, alone.component(expected, Transform).position
+    assert right.y > -5.0  # it was lifted
+    assert found.y == pytest.approx(right.y, abs=1e-7)
+    assert abs(measure_account(beside).energy["numerical"]) < 1e-5
+
+
+def test_a_medium_far_away_changes_no_bit_beside_contacts() -> None:
+    def places(medium: bool) -> bytes:
+        world = World(*standard_systems(), simulation=SimulationConfig(contacts="soft"))
+        bodies = heap(world)
+        if medium:
+            world.spawn(Transform((5e3, 0.0)), Shape.box(10.0, 4.0), Medium(WATER, 1.0))
+        world.run(steps=60)
+        rows = [world.entity_index.row_of[body] for body in bodies]
+        return world.table(Transform)["position"][rows].tobytes()
+
+    assert places(True) == places(False)

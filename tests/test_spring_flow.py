@@ -240,7 +240,7 @@ def test_a_flow_that_cannot_be_made_changes_nothing() -> None:
     world = flung()
     split = split_of(world)
     with world.active():
-        split.begin(world)
+        split.begin(world, world.simulation.dt)
         before = bits(world)
         (part,) = split.parts
         assert part.springs is not None

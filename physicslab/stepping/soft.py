@@ -92,7 +92,7 @@ class Soft(Stepper):
         if self._contact is not None:
             self._contact.begin_step(state)
         if self.substeps.split is not None:
-            self.substeps.split.begin(state)
+            self.substeps.split.begin(state, h)
         rested = min(h, state.simulation.dt)  # of a divided step only the end is observed
         finer = contacts.substep_factor if unequal else 0
         span = Span(parts * state.substeps, h / parts / state.substeps, h, state.time, rested, finer)

@@ -80,14 +80,18 @@ class SplitPart:
         self, state: State, forces: Sequence[ForceSystem], method: Integrator, steps: int,
         rows: NDArray[np.bool_], group: SpringGroup | None = None,
     ) -> None:  # fmt: skip
-        self.method, self.steps = method, steps
-        self.ode = OdeSystem(state, forces, rows, kicked=method.kicks)
-        # Contacts are accurate to far fewer digits than free motion: more would only take time.
-        rounded = 1e3 * max((force.rounding for force in forces), default=0.0)
-        self.ode.tolerance = max(state.simulation.tolerance, _TOLERANCE, rounded)
+        self.method, self.steps, self._forces = method, steps, forces
+        self.follow(state, rows)
         self.springs = None if group is None else SpringFlow(state, forces, self.ode.layout, group)
         if self.springs is None:
             state.compile((*method.kernels, motion.predict, work.note_flow))
+
+    def follow(self, state: State, rows: NDArray[np.bool_]) -> None:
+        """Move these ``rows`` (rows,) from now on."""
+        self.ode = OdeSystem(state, self._forces, rows, kicked=self.method.kicks)
+        # Contacts are accurate to far fewer digits than free motion: more would only take time.
+        rounded = 1e3 * max((force.rounding for force in self._forces), default=0.0)
+        self.ode.tolerance = max(state.simulation.tolerance, _TOLERANCE, rounded)
 
     def begin(self, state: State) -> None:
         """Take the present forces and masses; they are kept for a step."""
@@ -98,6 +102,8 @@ class SplitPart:
 
     def drift(self, state: State, h: float) -> None:
         """Move the bodies for ``h`` seconds, and book it as their own."""
+        if not len(self.ode.layout.moving):
+            return
         self._note_flow(state, 1.0, h)
         state.force_evaluations += self._follow(state, h)
         self._note_flow(state, -1.0, 0.0)
@@ -160,7 +166,11 @@ class SplitForces:
     """
 
     def __init__(self, state: State, forces: Sequence[ForceSystem], method: Integrator, steps: int) -> None:
-        rows = sub_integrated_rows(state, forces)
+        apart = all(force.couples(state) is not None for force in forces)
+        local = {force: boxes for force in forces if apart and (boxes := force.regions(state)) is not None}
+        self._rows = sub_integrated_rows(state, [force for force in forces if force not in local])
+        self._local = [(sub_integrated_rows(state, [force]), boxes) for force, boxes in local.items()]
+        rows = self._reached(state, state.simulation.dt)
         state.bodies.sub_integrated[:] = rows & state.table(Velocity).present
         if method is SPRING_SPLITTING and why_no_spring_flow(state, forces) is None:
             self.parts = [
@@ -191,12 +201,33 @@ class SplitForces:
                 predictable &= rates * h <= _MAX_PREDICTABLE
         bodies.unkicked[:] = bodies.sub_integrated & ~predictable
 
-    def begin(self, state: State) -> None:
-        """Take the present forces and masses; they are kept for a step."""
+    def begin(self, state: State, h: float) -> None:
+        """Take the present forces and masses, and what forces reach; they are kept for a step of ``h`` s."""
+        if self._local:
+            rows, moves = self._reached(state, h), state.table(Velocity).present
+            if not np.array_equal(rows & moves, state.bodies.sub_integrated):
+                state.bodies.sub_integrated[:] = rows & moves
+                self.parts[0].follow(state, rows)
         for part in self.parts:
             part.begin(state)
         if self._judges:
             self._find_predictable(state)
+
+    def _reached(self, state: State, h: float) -> NDArray[np.bool_]:
+        """Return the rows that forces act on within ``h`` seconds, at up to twice the present speeds.
+
+        Contacts may make bodies faster; what comes farther is kicked in that step.
+        """
+        if not self._local:
+            return self._rows
+        place, reach, found = state.table(Transform)["position"], state.bodies.shapes.reach, self._rows.copy()
+        pull = state.physics.gravity.magnitude if state.physics.gravity_mode == "linear" else 0.0
+        room = reach + 2.0 * h * np.hypot(*state.table(Velocity)["linear"].T) + pull * h * h
+        for rows, boxes in self._local:
+            for left, bottom, right, top in boxes.tolist():
+                within = np.maximum(left - place[:, 0], place[:, 0] - right) <= room
+                found |= rows & within & (np.maximum(bottom - place[:, 1], place[:, 1] - top) <= room)
+        return found
 
     def predict(self, state: State, h: float) -> None:
         """Change the velocities of predictable bodies by what forces make of them in ``h`` seconds."""

@@ -126,6 +126,13 @@ class MediumSystem(ForceSystem):
         rates[rows] = np.maximum(np.sqrt(lift * width * inverse), np.pi * width * drag * inverse)
         return rates
 
+    def regions(self, state: State) -> NDArray[np.float64]:
+        """Return the boxes around all media."""
+        media = state.batch(*self.needs).rows
+        numbers = self._fluids(state, media, np.zeros(2))
+        place, half = numbers[:, :2], numbers[:, 3:5]
+        return np.hstack((place - half, place + half))
+
     def rounding_floor(self, state: State) -> float:
         """Return that of the lift of a body that is wholly in the densest medium."""
         rows, bodies = state.batch(*_BODIES).rows, state.bodies

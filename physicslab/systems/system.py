@@ -298,6 +298,13 @@ class ForceSystem(System):
         """Return the rows (n,) of which it couples any with any, if it does; all, unless it says fewer."""
         return np.arange(len(state.entity_index))
 
+    def regions(self, state: State) -> NDArray[np.float64] | None:
+        """Return the boxes (n, 4) within which it acts: xmin, ymin, xmax, ymax [m]; ``None`` is everywhere.
+
+        They depend on the numbers of :meth:`inputs` alone.
+        """
+        return None
+
     def turned(self, state: State) -> NDArray[np.int64]:
         """Return the rows of the bodies that a compiled force turns: their angles are then followed.
 
