@@ -3,8 +3,7 @@
 import math
 import sys
 from collections.abc import Iterable, Iterator
-from importlib import import_module
-from typing import Any, Never
+from typing import Never
 
 import numpy as np
 
@@ -24,6 +23,7 @@ from physicslab.stepping.islands import Islands
 from physicslab.stepping.keyframe import Keyframe
 from physicslab.stepping.plan import StepPlan, default_plan
 from physicslab.stepping.planning import plan_for_jumps
+from physicslab.stepping.repeat import Repeat
 from physicslab.stepping.run import refuse_unnamed, run_through, strides
 from physicslab.stepping.select import Steppers, choose, remake, restart, resume, settle
 from physicslab.stepping.small import is_small
@@ -87,7 +87,7 @@ class World(Facade):
     -0.0981
     """
 
-    __slots__ = ("_mark", "_motion", "islands", "plan", "schedule", "stepper", "steppers")
+    __slots__ = ("_mark", "_motion", "_repeat", "islands", "plan", "schedule", "stepper", "steppers")
 
     def __init__(
         self,
@@ -107,10 +107,7 @@ class World(Facade):
         self.islands = Islands(self.schedule, _island_world)
         self._motion = motion_of(self)
         self._mark: Keyframe | None = None
-
-    def __repr__(self) -> str:
-        title = self.title or self.name or "without a title"
-        return f"<World {title!r}: entities: {len(self.entities())}, t = {self.time:g} s>"
+        self._repeat: Repeat | None = None
 
     # ---- time ----------------------------------------------------------------------------------------------
 
@@ -142,16 +139,21 @@ class World(Facade):
         """
         if not self.steps and self._mark is None and self.islands.divides:
             self.mark()
+        repeat, self._repeat = self._repeat, None
+        if repeat is not None and repeat.h == h:
+            made = repeat.make(self, self._motion, steps)
+            if made:
+                return self._count(*made)
         try:
-            return self._attempt(h, steps, 1.0)
+            return self.attempt(h, steps, 1.0)
         except Overloaded as found:
             if not self.islands.divides:
                 raise  # the world that this one is an island of divides the step
             safe, load = found.steps - 1, found.load
         if steps > 1:
             return self.advance(h, max(1, safe))
-        at, start = time_of_break(self._load_after, h, load), self.time
-        self._attempt(at, 1, math.inf)
+        at, start = time_of_break(self.attempt, h, load), self.time
+        self.attempt(at, 1, math.inf)
         if h - at < MIN_TIME:
             return 1
         self.steps, self.time = self.steps - 1, start + at
@@ -161,16 +163,8 @@ class World(Facade):
         finally:
             self.time = start
 
-    def _load_after(self, h: float) -> float:
-        """Return the load of joints after ``h`` seconds, and go back."""
-        try:
-            self._attempt(h, 1, -math.inf)
-        except Overloaded as found:
-            return found.load
-        return 0.0
-
-    def _attempt(self, h: float, steps: int, bears: float) -> int:
-        """Advance, unless that ends with a load on joints beyond ``bears`` that is known at any time."""
+    def attempt(self, h: float, steps: int, bears: float) -> int:
+        """Advance; raise ``Overloaded`` where that ends with a load on joints beyond ``bears``."""
         if self.stale:  # as where a step was undone
             self._follow(numbers=True)
         with StepTransaction(self, self._motion):
@@ -182,8 +176,14 @@ class World(Facade):
             if load > bears and not any(isinstance(part.stepper, Soft) for part in self.parts):
                 raise Overloaded(made.steps, load)
             self.schedule.run(Stage.FINISH, self, h * made.steps)
+        return self._count(made, Repeat.of(self, self.schedule, self.steppers, self.stepper, h))
+
+    def _count(self, made: Advance, repeat: Repeat | None) -> int:
+        """Count the steps that were made, and return how many; the next may ``repeat`` them."""
         self.steps += made.steps
         self._forces_at, self.step_divisions = (self.steps, self.motion_edits), made.divisions
+        self._repeat = repeat
+        self._follow_islands()
         return made.steps
 
     def _prepare(self, h: float) -> None:
@@ -301,11 +301,6 @@ class World(Facade):
     def __deepcopy__(self, memo: object) -> "World":
         return self.copy()
 
-    def __reduce__(self) -> tuple[Any, ...]:
-        # The contents of a scene file go to another process; the layer that writes files is above this one.
-        scene = import_module("physicslab.files.scene")
-        return scene.load_scene, (scene.write_scene(self),)
-
     # ---- structure -----------------------------------------------------------------------------------------
 
     @quiet
@@ -318,6 +313,10 @@ class World(Facade):
         """Follow what changed in the structure of the world since the last call; in the numbers as well."""
         if self.in_step:
             return
+        if numbers and self._repeat is not None and self._repeat.holds(self, self.islands):
+            self.generation += 1
+            return
+        self._repeat = None
         self.in_step = True  # a batch that is taken meanwhile follows nothing
         self._behind = False
         try:
@@ -395,6 +394,7 @@ class World(Facade):
         self.revision += 1
         self.motion_edits += 1
         self.fastest_rates.clear()
+        self._repeat = None
 
     @quiet
     def book_edits(self) -> None:

@@ -92,9 +92,17 @@ class EntityIndex:
             self.revision += 1
         return True
 
+    def is_synchronous(self) -> bool:
+        """Whether esper's active context still holds the same, so that no table has changed its rows."""
+        return esper.get_component(_Nothing) is self._seen and not esper._dead_entities
+
+    def blocks(self) -> list[NDArray[np.uint8]]:
+        """Return the memory of all components; other blocks take its place when structure changes."""
+        return [table.block for table in self.tables.values() if table.handles]
+
     def has_followed(self, entity: int) -> bool:
         """Whether the components of an entity of esper's active context are those that it had lately."""
-        if esper.get_component(_Nothing) is self._seen and not esper._dead_entities:
+        if self.is_synchronous():
             return True
         if entity in esper._dead_entities:
             return False

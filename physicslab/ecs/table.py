@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+import math
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -24,6 +25,10 @@ _DTYPES: Mapping[Kind, type] = {
 }
 
 
+_LINE = 64
+"""Bytes at multiples of which columns begin: those of a line of the cache."""
+
+
 class Table:
     """The columns of one component in one world, one row an entity.
 
@@ -32,7 +37,8 @@ class Table:
     every kernel reads as "nothing here": no mass, no speed, no shape.
 
     ``table["position"]`` is the column of a field, in use rows only; a derived field has a second column
-    ``"<field>_given"``. The arrays are views that stay valid until the next structural change.
+    ``"<field>_given"``. The arrays are views that stay valid until the next structural change; they are in
+    one ``block`` of memory.
     """
 
     def __init__(self, component: type[Any], capacity: int) -> None:
@@ -51,6 +57,7 @@ class Table:
                 self._names.append(f"{spec.name}_given")
                 self._storage.append(np.zeros(0, np.bool_))
         self._present = self.present
+        self.block: NDArray[np.uint8] = np.zeros(0, np.uint8)
         self._zeros = [[column.dtype.type(0).item()] * column.ndim for column in self._storage]
         self.resize(0, capacity)
 
@@ -65,8 +72,7 @@ class Table:
     def resize(self, rows: int, capacity: int) -> None:
         """Use the first ``rows`` rows, with room for ``capacity``."""
         if capacity > len(self._present):
-            self._present = _grown(self._present, capacity)
-            self._storage = [_grown(column, capacity) for column in self._storage]
+            self.block, (self._present, *self._storage) = _grown((self._present, *self._storage), capacity)
             # Handles share this list, so replacing its items moves every one of them to the new memory.
             self._views[:] = [memoryview(column.reshape(-1)) for column in self._storage]
         self.present = self._present[:rows]
@@ -125,10 +131,18 @@ def as_slice(rows: NDArray[np.int64]) -> Any:
     return slice(first, end) if end - first == len(rows) and (np.diff(rows) == 1).all() else rows
 
 
-def _grown(column: NDArray[Any], capacity: int) -> NDArray[Any]:
-    larger = np.zeros((capacity, *column.shape[1:]), column.dtype)
-    larger[: len(column)] = column
-    return larger
+def _grown(
+    columns: Sequence[NDArray[Any]], capacity: int
+) -> tuple[NDArray[np.uint8], list[NDArray[Any]]]:  # fmt: skip
+    """Return one block of memory for ``capacity`` rows, and columns in it with what columns have now."""
+    shapes = [(capacity, *column.shape[1:]) for column in columns]
+    sizes = [math.prod(shape) * column.itemsize for shape, column in zip(shapes, columns, strict=True)]
+    ends = np.cumsum([-(-size // _LINE) * _LINE for size in sizes]).tolist()
+    block, larger = np.zeros(ends[-1], np.uint8), list[NDArray[Any]]()
+    for column, shape, size, start in zip(columns, shapes, sizes, (0, *ends[:-1]), strict=True):
+        larger.append(block[start : start + size].view(column.dtype).reshape(shape))
+        larger[-1][: len(column)] = column
+    return block, larger
 
 
 @dataclass(frozen=True, slots=True)

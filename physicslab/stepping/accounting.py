@@ -69,6 +69,12 @@ def balance_of(
     return Balance(total, px, py, spin)
 
 
+def _is_of_columns(forces: Sequence[ForceSystem]) -> bool:
+    """Whether a balance depends on columns, laws and settings of forces alone."""
+    stores = [force for force in forces if force.potential is not None]
+    return all(force.is_engine or type(force) is SpringSystem for force in stores)
+
+
 def _seen(state: State, forces: Sequence[ForceSystem]) -> object | None:
     """Return what a balance depends on, in short.
 
@@ -76,18 +82,23 @@ def _seen(state: State, forces: Sequence[ForceSystem]) -> object | None:
     """
     if len(state.entity_index) < _MANY:
         return None
-    stores = [force for force in forces if force.potential is not None]
-    if not all(force.is_engine or type(force) is SpringSystem for force in stores):
+    if not _is_of_columns(forces):
         return None
     _, words = _columns(state)
-    settings = [force.settings(state) for force in stores]
+    settings = [force.settings(state) for force in forces if force.potential is not None]
     return direct_entry(digest.digest_sums)(*words), state.physics, settings, state.entity_index.revision
 
 
-def open_account(state: State, forces: Sequence[ForceSystem]) -> None:
-    """Begin a step: what was changed since the last one is an edit, or a hand's."""
-    account, seen = state.account, _seen(state, forces)
-    unchanged = seen is not None and seen == account.seen and account.start is not None
+def open_account(state: State, forces: Sequence[ForceSystem], *, unedited: bool = False) -> None:
+    """Begin a step: what was changed since the last one is an edit, or a hand's.
+
+    ``unedited`` says that no column was.
+    """
+    account = state.account
+    unchanged = unedited and account.is_known and _is_of_columns(forces)
+    if not unchanged:
+        seen = _seen(state, forces)
+        unchanged = seen is not None and seen == account.seen and account.start is not None
     now = account.last if unchanged else balance_of(state, forces)
     account.open(now, held_in(state), state.time)
     account.is_open = True

@@ -25,13 +25,22 @@ class Overloaded(Exception):
         self.steps, self.load = steps, load
 
 
-def time_of_break(load_after: Callable[[float], float], h: float, load: float) -> float:
+def time_of_break(attempt: Callable[[float, int, float], int], h: float, load: float) -> float:
     """Return after which part of ``h`` [s] a ``load`` first found at its end reaches 1, and just exceeds it.
 
-    ``load_after`` tells the load after a time [s]; where it jumps, as in an impact, that is the time of the
-    jump. Nothing is known of the load at the beginning: halves lead there if it was too large before.
+    ``attempt`` makes steps of a length [s], unless a load is then beyond a limit, which it raises. Where the
+    load jumps, as in an impact, that is the time of the jump. Nothing is known of the load at the beginning:
+    halves lead there if it was too large before.
     """
-    return first_time(lambda t: load_after(t) - 1.0, h, load - 1.0, None, _LOCATED, _LOCATED)
+
+    def excess_after(t: float) -> float:
+        try:
+            attempt(t, 1, -math.inf)
+        except Overloaded as found:
+            return found.load - 1.0
+        return -1.0
+
+    return first_time(excess_after, h, load - 1.0, None, _LOCATED, _LOCATED)
 
 
 def first_time(

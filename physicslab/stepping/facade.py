@@ -30,6 +30,15 @@ class Facade(State):
             if isinstance(method := getattr(cls, name), FunctionType):
                 method.__qualname__ = f"{cls.__qualname__}.{name}"
 
+    def __repr__(self) -> str:
+        title = self.title or self.name or "without a title"
+        return f"<World {title!r}: entities: {len(self.entities())}, t = {self.time:g} s>"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # The contents of a scene file go to another process; the layer that writes files is above this one.
+        scene = import_module("physicslab.files.scene")
+        return scene.load_scene, (scene.write_scene(self),)
+
     @property
     def energy(self) -> Energy:
         """The energy as it is now: ``.kinetic``, ``.potential`` by force, ``.total`` [J]."""

@@ -60,7 +60,7 @@ class Flow(Stepper):
         self._schedule, self._plan, self._method = schedule, plan, plan.integrator
         self._ode = OdeSystem(state, schedule.smooth_forces, kicked=self._method.kicks)
         self._ode.tolerance = tolerance_for(state, schedule.forces)
-        self._joined = schedule.find(JointSystem) is not None
+        self._joined, self._unedited = schedule.find(JointSystem) is not None, False
         self.kernels: tuple[Any, ...] = self._method.kernels
         self.reason = plan.reason
 
@@ -122,6 +122,18 @@ class Flow(Stepper):
         check_finite(state, state.time + h * steps)
         return Advance(steps, parts)
 
+    def goes_on(self, state: State) -> bool:
+        """Whether no force is one in Python, which may depend on anything."""
+        return not self._ode.interpreted
+
+    def repeat(self, state: State, h: float, steps: int) -> Advance:
+        """Make steps as in the last call, under its laws."""
+        self._unedited = True
+        try:
+            return self.advance(state, h, steps)
+        finally:
+            self._unedited = False
+
     def repeatable(self, state: State, stretches: Sequence[Stretch]) -> Callable[[], bool]:
         """Return what makes steps from the present places and velocities; see :class:`Repeatable`."""
         low, rates = state.remainders, dict(state.fastest_rates)
@@ -142,7 +154,7 @@ class Flow(Stepper):
 
     def _flow(self, state: State, span: float, steps: int, *, divides: bool) -> None:
         method, ode = self._method, self._ode
-        ode.gather(state)
+        ode.gather(state, unedited=self._unedited)
         put_together(state, self._schedule.forces, ode)
         parts = 1 if method.chooses_steps else self._plan.substeps
         count = 1 if method.chooses_steps else parts * steps

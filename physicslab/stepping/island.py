@@ -1,6 +1,6 @@
 """An island: some bodies of a world, and a world of their own that advances them."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -10,19 +10,24 @@ from numpy.typing import NDArray
 
 from physicslab.components import Gear, Name, Shape, Transform, Velocity
 from physicslab.contacts.arguments import motion_of
+from physicslab.contacts.kept import KeptContacts, carry_sleep
 from physicslab.ecs.component import Component
+from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.context import create_numbered
 from physicslab.ecs.table import Table
 from physicslab.kernels import near_counts
-from physicslab.state.remainders import coordinate_keys
+from physicslab.state.remainders import Remainders, coordinate_keys
 from physicslab.state.state import State
 from physicslab.stepping.breaks import Overloaded
 from physicslab.stepping.flow import Flow
-from physicslab.stepping.partition import movable_in
+from physicslab.stepping.partition import MAX_BODIES, movable_in
 from physicslab.stepping.plan import StepPlan
 from physicslab.stepping.planning import choose_plan, outlived
 from physicslab.stepping.run import Stepped
 from physicslab.stepping.select import Steppers
+from physicslab.systems.schedule import Schedule
+from physicslab.systems.standard import PHYSICS_SYSTEMS
+from physicslab.systems.system import System
 
 type Rows = NDArray[np.int64]
 """Numbers of rows or entities (n,)."""
@@ -43,6 +48,9 @@ class Part(Stepped, Protocol):
 
     def book_edits(self) -> None:
         """Book what was changed since the last step."""
+
+
+type Make = Callable[[Sequence[System], PhysicsConfig, SimulationConfig], Part]
 
 
 class Island:
@@ -161,6 +169,38 @@ class Island:
 def in_order(members: Iterable[Island]) -> tuple[Island, ...]:
     """Return islands in the order of their first bodies."""
     return tuple(sorted(members, key=lambda island: int(island.entities[0])))
+
+
+def blank_world(state: State, schedule: Schedule, make: Make) -> Part:
+    """Return a world without bodies, with the systems of a ``schedule`` that act within a step."""
+    systems = [
+        system.fresh()
+        for system in schedule.systems
+        if type(system) in PHYSICS_SYSTEMS and system.acts_within_step()
+    ]
+    with state.active():  # a new world is the active one until the end of the block
+        part = make(systems, state.physics, state.simulation)
+    part.schedule.note_into(schedule)
+    return part
+
+
+def make_island(state: State, world: Part, entities: Rows, sources: Sequence[State]) -> Island:
+    """Return an island of some bodies in a blank world; of these ``sources`` have contacts and rests."""
+    island = Island(world, entities)
+    part = island.state
+    fixed = state.table(Transform).present & ~movable_in(state)
+    fill(state, part, entities, state.entity_index.entities[np.flatnonzero(fixed)])
+    part.time, part.steps = state.time, state.steps
+    world.synchronise()
+    # Slots of wide contacts are those of one world, and no matter of few bodies.
+    apart = len(sources) > 1 or len(entities) <= MAX_BODIES
+    kept = [KeptContacts.of(source.contacts).among(entities, apart=apart) for source in sources]
+    KeptContacts.joined(kept, part.contacts.counts).restore(part)
+    for source in sources:
+        carry_sleep(source, part)
+    part.joints.restore([kept for source in sources for kept in source.joints.kept()])
+    part.remainders = Remainders.joined([source.remainders for source in sources])
+    return island
 
 
 def fill(state: State, part: State, entities: Rows, fixed: Rows) -> None:

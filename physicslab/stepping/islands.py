@@ -8,7 +8,7 @@ of an island are those that it has alone.
 
 import math
 import weakref
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -16,7 +16,6 @@ import numpy as np
 from physicslab.components import Transform, Velocity
 from physicslab.contacts.arguments import motion_of
 from physicslab.contacts.kept import KeptContacts, carry_sleep
-from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.sentences import sentence
 from physicslab.state.masses import Diverged
 from physicslab.state.remainders import Remainders
@@ -26,27 +25,28 @@ from physicslab.stepping.breaks import Overloaded
 from physicslab.stepping.island import (
     Island,
     KeptIsland,
+    Make,
     Part,
     Rows,
+    blank_world,
     copy_joints,
-    fill,
     in_order,
     join_logs,
     kept_of,
+    make_island,
     numbers_of,
     rows_changed,
 )
+from physicslab.stepping.select import Steppers
 from physicslab.stepping.stepper import Advance
 from physicslab.stepping.undo import go_back
 from physicslab.systems.schedule import Schedule
-from physicslab.systems.standard import PHYSICS_SYSTEMS
-from physicslab.systems.system import Stage, System
-
-type Make = Callable[[Sequence[System], PhysicsConfig, SimulationConfig], Part]
+from physicslab.systems.system import Stage
 
 EXAMINED_S, FEW_EXAMINED = 2.0, 2
 """At each multiple of this time [s] it is looked whether an island has come apart; only at each so many of
 these, if it has the best steppers already, as few bodies do."""
+_NONE = np.zeros(0, np.int64)
 _LATE, _NEVER = 1e-9, 1 << 60
 """Share of that time by which the clock, a sum of rounded steps, may be late; steps that are never made."""
 
@@ -89,6 +89,8 @@ class Islands:
         self._comes_apart, self.divisible, self.apart_until, self._left = False, True, -math.inf, b""
         self._examined = self._bodies = 0
         self._entities: Rows | None = None
+        self._kernels: tuple[Any, ...] = ()
+        self._kernels_of: list[Steppers] = []
 
     # ---- as a stepper --------------------------------------------------------------------------------------
 
@@ -100,8 +102,12 @@ class Islands:
     @property
     def kernels(self) -> tuple[Any, ...]:
         """Kernels that the steppers of all islands call."""
-        mains = (island.world.steppers.main(island.state) for island in self.members)
-        return tuple(dict.fromkeys(kernel for stepper in mains for kernel in stepper.kernels))
+        steppers = [island.world.steppers for island in self.members]
+        if steppers != self._kernels_of:
+            mains = (island.world.steppers.main(island.state) for island in self.members)
+            self._kernels = tuple(dict.fromkeys(kernel for stepper in mains for kernel in stepper.kernels))
+            self._kernels_of = steppers
+        return self._kernels
 
     def holds(self, state: State) -> bool:
         """Return True: edits are followed at each step."""
@@ -110,6 +116,10 @@ class Islands:
     def ready(self, state: State, h: float) -> bool:
         """Whether there are several islands."""
         return bool(self.members)
+
+    def repeat(self, state: State, h: float, steps: int) -> Advance:
+        """Make steps as in the last call."""
+        return self.advance(state, h, steps)
 
     def advance(self, state: State, h: float, steps: int) -> Advance:
         """Make the steps, or those until all is one island.
@@ -157,9 +167,10 @@ class Islands:
         state.substeps = state.simulation.substeps
         smooth = [island for island in self.members if not island.touches]
         smooth.sort(key=lambda island: not island.state.joints.breakable)  # these may make fewer steps
+        driven = self._driven(state)
         try:
             for island in smooth:
-                wanted, steps = steps, island.go(state, start, h, steps, self._driven(state, island))
+                wanted, steps = steps, island.go(state, start, h, steps, driven.get(island, _NONE))
                 if steps < wanted and island is not smooth[0]:
                     raise Overloaded(steps + 1)
             while made < steps and self.members:
@@ -167,14 +178,16 @@ class Islands:
                 count = min(self.steps_ahead(state, h), steps - made) if touching else steps - made
                 logged = [island.state.contacts.logged for island in touching]
                 for island in touching:
-                    island.go(state, state.time, h, count, self._driven(state, island))
+                    island.go(state, state.time, h, count, driven.get(island, _NONE))
                 parts = max(parts, *(island.state.step_divisions for island in self.members))
                 join_logs(state, [island.state for island in touching], logged)
                 made += count
                 state.time = start + made * h
                 self._write_back(state)
-                if made < steps and not self._join_near(state, h):
-                    self._examine(state)
+                if made < steps:
+                    if not self._join_near(state, h):
+                        self._examine(state)
+                    driven = self._driven(state) if self.members else {}
         finally:
             state.time = start
         return Advance(made, parts)
@@ -203,17 +216,16 @@ class Islands:
         self.apart_until = -math.inf
         self._join_near(state, state.simulation.dt)
 
-    def _driven(self, state: State, island: Island) -> Rows:
-        """Return the rows that no force moves, which the first island writes for all."""
-        if island is not self.members[0]:
-            return np.zeros(0, np.int64)
+    def _driven(self, state: State) -> dict[Island, Rows]:
+        """Return the rows that no force moves, and the island that writes them for all: the first."""
         moves = state.table(Transform).present & state.table(Velocity).present
-        return np.flatnonzero(moves & ~partition.movable_in(state))
+        return {self.members[0]: np.flatnonzero(moves & ~partition.movable_in(state))}
 
     def _write_back(self, state: State) -> None:
         """Write the motion of all islands into the whole world."""
+        driven = self._driven(state)
         for island in self.members:
-            island.write_back(state, self._driven(state, island))
+            island.write_back(state, driven.get(island, _NONE))
             copy_joints(island.state, state)
         state.sleep.count = int(np.count_nonzero(state.sleep.asleep))
         self._left = b"".join(numbers_of(state))
@@ -253,6 +265,16 @@ class Islands:
             self._take_edits(state)
         if not self._join_near(state, state.simulation.dt):
             self._examine(state)
+
+    def are_settled(self, state: State, h: float) -> bool:
+        """Whether it is not time to look for them before the next step of ``h`` seconds."""
+        if self.due or (self.members and state.time >= self.apart_until - 0.5 * h):
+            return False
+        return not self._comes_apart or _period(state) == self._examined
+
+    def goes_on(self, state: State) -> bool:
+        """Whether there are several still."""
+        return bool(self.members)
 
     def _divide(self, state: State) -> None:
         """Find all islands of a world that is one."""
@@ -338,36 +360,14 @@ class Islands:
 
     # ---- making and keeping them ---------------------------------------------------------------------------
 
+    def _island(self, state: State, entities: Rows, sources: Sequence[State]) -> Island:
+        """Return an island of some bodies, of which ``sources`` have contacts, sleep and remainders."""
+        return make_island(state, self.blank(state), entities, sources)
+
     def blank(self, state: State) -> Part:
         """Return a world without bodies that can become an island of a state."""
         assert self._make is not None
-        systems = [
-            system.fresh()
-            for system in self._schedule.systems
-            if type(system) in PHYSICS_SYSTEMS and system.acts_within_step()
-        ]
-        with state.active():  # a new world is the active one until the end of the block
-            part = self._make(systems, state.physics, state.simulation)
-        part.schedule.note_into(self._schedule)
-        return part
-
-    def _island(self, state: State, entities: Rows, sources: Sequence[State]) -> Island:
-        """Return an island of some bodies, of which ``sources`` have contacts, sleep and remainders."""
-        island = Island(self.blank(state), entities)
-        part = island.state
-        fixed = state.table(Transform).present & ~partition.movable_in(state)
-        fill(state, part, entities, state.entity_index.entities[np.flatnonzero(fixed)])
-        part.time, part.steps = state.time, state.steps
-        island.world.synchronise()
-        # Slots of wide contacts are those of one world, and no matter of few bodies.
-        apart = len(sources) > 1 or len(entities) <= partition.MAX_BODIES
-        kept = [KeptContacts.of(source.contacts).among(entities, apart=apart) for source in sources]
-        KeptContacts.joined(kept, part.contacts.counts).restore(part)
-        for source in sources:
-            carry_sleep(source, part)
-        part.joints.restore([kept for source in sources for kept in source.joints.kept()])
-        part.remainders = Remainders.joined([source.remainders for source in sources])
-        return island
+        return blank_world(state, self._schedule, self._make)
 
     def adopt(self, state: State, members: Sequence[Island]) -> None:
         """Go on with islands that were made elsewhere; without any the world is one."""

@@ -115,6 +115,10 @@ class Rigid(Stepper):
         """Whether the coming step is not one that it has just refused."""
         return self._refused != state.steps
 
+    def goes_on(self, state: State) -> bool:
+        """Whether no force is one in Python, which may depend on anything."""
+        return not self._ode.interpreted
+
     def advance(self, state: State, h: float, steps: int) -> Advance:
         """Make the steps, or those before the first that it cannot make and is not ready for."""
         began, parts = time.perf_counter_ns(), divisions(state, h)

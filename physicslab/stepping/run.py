@@ -233,8 +233,8 @@ def _advance(
     best = world.stepper_for(h)
     count = max(1, min(wanted, length.whole - done, world.steps_ahead(h)))
     if not best.leaps:
-        may = is_patient or not all(one.compiled for one in best.kernels)
-        divides = may and at_once < count and best.divisible
+        may = at_once < count and (is_patient or not all(one.compiled for one in best.kernels))
+        divides = may and best.divisible
         return world.advance(h, at_once if divides else count)
     if isinstance(best, Flow) and best.whole and wanted >= length.steps - done:
         return _leap(world, length.seconds - length.elapsed(done), 1, length.steps - done)

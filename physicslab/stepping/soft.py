@@ -57,7 +57,7 @@ class Soft(Stepper):
         self.keeps_balance: bool = not self.hooks and self.substeps.uniform
         # With one force the loop measures the same energy, bit for bit, as is measured between steps.
         self._measures = len(schedule.forces) < 2
-        self._max_steps = 64
+        self._max_steps, self._call = 64, (Span(1, 0.0, 0.0, 0.0, 0.0, 0), 1)
         self.energy_taken, self.energy_given, self._last = -math.inf, 0.0, -math.inf
         self.reason = plan.reason
         if not self.hooks:
@@ -79,33 +79,49 @@ class Soft(Stepper):
     def advance(self, state: State, h: float, steps: int) -> Advance:
         """Make ``steps`` steps or fewer; where one fails, those before it are counted."""
         contacts, parts = state.contacts, divisions(state, h)
-        single, unequal = bool(self.hooks) or parts > 1, state.bodies.unequal and state.has_forces
+        unequal = state.bodies.unequal and state.has_forces
         if not unequal:
             contacts.substep_factor = 1
         factor = max(contacts.substep_factor, falls_far(state, h / parts))
         state.substeps = factor * state.simulation.substeps
-        wanted, steps = steps, 1 if single else min(steps, self._max_steps)
-        began = working_ns() if wanted > 1 else 0
         refill(state)
         if self._broad_phase is not None:
             self._broad_phase.follow_rows(state)
-        if self._contact is not None:
-            self._contact.begin_step(state)
-        if self.substeps.split is not None:
-            self.substeps.split.begin(state, h)
         rested = min(h, state.simulation.dt)  # of a divided step only the end is observed
         finer = contacts.substep_factor if unequal else 0
         span = Span(parts * state.substeps, h / parts / state.substeps, h, state.time, rested, finer)
-        cause = self._open(state) if self.keeps_balance else -1
-        self._note_energy(state)
-        made = self.substeps.go_through(state, span, steps, cause)
+        self._call = span, parts
+        return self._make(state, span, steps, self._open(state) if self.keeps_balance else -1)
+
+    def goes_on(self, state: State) -> bool:
+        """Whether the loop has gone through, with all bodies awake."""
+        return self.substeps.went_through and not state.sleep.count
+
+    def repeat(self, state: State, h: float, steps: int) -> Advance:
+        """Make steps as in the last call, with its arguments."""
+        span, _ = self._call
+        now = Span(span.substeps, span.h, span.dt, state.time, span.rested, span.finer)
+        return self._make(state, now, steps, -1, again=True)
+
+    def _make(self, state: State, span: Span, steps: int, cause: int, *, again: bool = False) -> Advance:
+        """Make steps; a change since the last one is booked to ``cause``, unless that is negative."""
+        parts, wanted = self._call[1], steps
+        steps = 1 if self.hooks or parts > 1 else min(steps, self._max_steps)
+        began = working_ns() if wanted > 1 else 0
+        if self._contact is not None:
+            self._contact.begin_step(state)
+        if self.substeps.split is not None:
+            self.substeps.split.begin(state, span.dt)
+        if not again:
+            self._note_energy(state)
+        made = self.substeps.go_through(state, span, steps, cause, again=again)
         if self.hooks:
-            self._end_step(state, h)
+            self._end_step(state, span.dt)
             if state.samples is not None:
-                state.samples.take(state, state.time + made * h)
+                state.samples.take(state, state.time + made * span.dt)
         keep_places(state)
         if len(state.joints):
-            state.joints.force[:] = state.joints.impulse / (contacts.impulse_dt or span.h)
+            state.joints.force[:] = state.joints.impulse / (state.contacts.impulse_dt or span.h)
         self._note_energy(state)
         if wanted > 1:
             self._max_steps = max(1, min(_MAX_STEPS, made * _CALL_NS // max(working_ns() - began, 1)))

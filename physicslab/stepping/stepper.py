@@ -100,6 +100,14 @@ class Advancer(Protocol):
             If a value would not be finite. Whole steps before that one are counted by the stepper.
         """
 
+    def goes_on(self, state: State) -> bool:
+        """Whether another call may be like the last one where nothing is edited in between."""
+        return False
+
+    def repeat(self, state: State, h: float, steps: int) -> Advance:
+        """Make steps as in the last call, since which nothing was edited, and after which it goes on."""
+        return self.advance(state, h, steps)
+
 
 type Stretch = tuple[float, float, int]
 """When some steps begin [s], how long each is [s], and how many they are."""

@@ -93,6 +93,8 @@ class Substeps:
         The flow of bodies on springs and in drag, if not kicks.
     uniform : bool
         Whether no forces act but uniform ones that are compiled.
+    went_through : bool
+        Whether the loop made the last step to its end, and has nothing to leave to Python after it.
     """
 
     def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None:
@@ -120,18 +122,24 @@ class Substeps:
         self._springs = (np.zeros(0), np.zeros(0, np.int64)) if self.split is None else self.split.flows
         self._entry: Callable[..., Any] = soft.advance
         self._fixed: tuple[tuple[Any, ...], tuple[Any, ...], Any]
+        self._held: tuple[Any, ...] | None = None  # arguments of the last call, where they hold for the next
         self._packed: tuple[list[NDArray[np.int64]], NDArray[np.int64]] = [], np.zeros((0, 3), np.int64)
         self._steps = self._substeps = self._nanoseconds = 0
+        self.went_through = False
 
     # ---- going through them --------------------------------------------------------------------------------
 
-    def go_through(self, state: State, span: Span, steps: int = 1, cause: int = -1) -> int:
+    def go_through(
+        self, state: State, span: Span, steps: int = 1, cause: int = -1, *, again: bool = False
+    ) -> int:  # fmt: skip
         """Make ``steps`` steps or, where everything falls asleep or substeps are to be others, fewer.
 
-        A change since the last step is booked to ``cause``, unless that is negative. Where one
-        fails, those before it are counted. Returns how many there are; how many times as many substeps the
-        next step needs is written into the contacts.
+        A change since the last step is booked to ``cause``, unless that is negative; ``again`` says that
+        there was none. Where one fails, those before it are counted. Returns how many there are; how many
+        times as many substeps the next step needs is written into the contacts.
         """
+        if not again:
+            self._held = None
         before, made, substep, part = state.time, 0, 0, 0
         first, why = 0 if self._contact is None or self._contact.first else -1, soft.OTHER_SUBSTEPS
         try:
@@ -173,6 +181,7 @@ class Substeps:
                 self._contact.end_substep()
         if span.finer and why != soft.ALL:
             state.contacts.substep_factor = self._needed_factor(state, span)
+        self.went_through = why == soft.ALL and not self._hooked
         return made if self._parts else steps
 
     def _overloaded(self, state: State, span: Span) -> bool:
@@ -244,6 +253,8 @@ class Substeps:
         state.collisions += impacts - finished_impacts
         self._nanoseconds += time.perf_counter_ns() - began
         self._schedule.defer(self._settle)
+        if why != soft.ALL:
+            self._held = None  # arrays may be replaced where it has come back
         return why, done, substep, part
 
     def _finish(self, state: State, steps: int, span: Span) -> None:
@@ -254,6 +265,12 @@ class Substeps:
 
     def _arguments(self, state: State, h: float) -> tuple[Any, ...]:
         """Return the arguments of the loop; those that change only with structure or laws are kept."""
+        contacts = state.contacts
+        held = self._held = self._held or self._present_arguments(state, h)
+        return (*held, contacts.impulse_dt, contacts.step_log, self._cost)
+
+    def _present_arguments(self, state: State, h: float) -> tuple[Any, ...]:
+        """Return those of a call that no call before it tells."""
         contacts, sleep = state.contacts, state.sleep
         columns, shapes = state.checkpoint.columns, state.bodies.plain_shapes
         if self._columns is not columns or self._shapes is not shapes or self._h != h:
@@ -274,7 +291,7 @@ class Substeps:
             fat = self._broad_phase.fat
         return (
             *motion, packed, self._springs, sleepers, damping, fat, bounds, near_in(state), joints_in(state),
-            contacts.opened, self._softness(state), contacts.impulse_dt, contacts.step_log, self._cost,
+            contacts.opened, self._softness(state),
         )  # fmt: skip
 
     def _addresses(self, state: State) -> NDArray[np.int64]:

@@ -1,0 +1,108 @@
+"""A step made again as the last one was: the same bits as one made in full, whatever is done in between."""
+
+from dataclasses import replace
+from random import Random
+
+import esper
+import pytest
+
+from physicslab import load_scene
+from physicslab.components import Mass, Material, Transform, Velocity
+from physicslab.prefabs import circle
+from physicslab.stepping import repeat
+from physicslab.world import World
+
+SCENES = (
+    "slope",
+    "stack",
+    "newtons_cradle",
+    "pendulum",
+    "two_planets",
+    "resonance",
+    "car",
+    "floating",
+    "bridge",
+)
+
+
+def figures(world: World) -> list[bytes]:
+    """Return all numbers of a world that a step may change."""
+    columns = [column.tobytes() for table in world.entity_index.tables.values() for column in table.columns]
+    counts = world.time, world.steps, world.collisions, world.force_evaluations, world.substeps
+    kept = world.account.sums, world.contacts.impacts, world.joints.force, world.sleep.asleep
+    return [*columns, repr((*counts, world.account.last)).encode(), *(one.tobytes() for one in kept)]
+
+
+def edit(world: World, random: Random) -> World:
+    """Do one of many things to a world between two steps, mostly nothing; return the world to go on with."""
+    moving = world.batch(Velocity, Mass).entities.tolist()
+    body, choice = random.choice(moving), random.randrange(60)
+    if choice == 0:
+        world.component(body, Velocity).linear = (random.uniform(-1, 1), random.uniform(-1, 1))
+    elif choice == 1:
+        world.table(Transform)["position"][world.entity_index.row_of[body]] += 0.001
+    elif choice == 2:
+        world.component(body, Mass).mass *= 1.5
+    elif choice == 3:
+        for material in world.batch(Material).entities.tolist():
+            world.component(material, Material).restitution = 0.3
+    elif choice == 4:
+        circle(world, (random.uniform(-5, 5), 9.0), radius=0.2)
+    elif choice == 5 and len(moving) > 2:
+        with world.active():
+            esper.delete_entity(body)
+    elif choice == 6:
+        world.physics = replace(world.physics, linear_damping=0.1)
+    elif choice == 7:
+        world.simulation = replace(world.simulation, substeps=world.simulation.substeps + 1)
+    elif choice == 8:
+        world.account.restart()
+    elif choice == 9:
+        world.time = random.uniform(0.0, 3.0)
+    elif choice == 10:
+        return world.copy()
+    elif choice == 11:
+        world.reset()
+    elif choice == 12:
+        world.book_edits()
+    return world
+
+
+def drive(name: str, seed: int) -> list[list[bytes]]:
+    """Return the figures of a scene after each of many steps, with edits in between."""
+    world, random, found = load_scene(name), Random(seed), []
+    for _ in range(60):
+        world = edit(world, random)
+        kind = random.randrange(8)
+        if kind == 0:
+            world.run(steps=random.randint(1, 6))
+        elif kind == 1:
+            world.step(0.004)
+        else:
+            world.step()
+        found.append(figures(world))
+    return found
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_a_repeated_step_has_the_bits_of_one_made_in_full(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    repeated = drive(name, 3)
+    monkeypatch.setattr(repeat, "_FEW", -1)
+    in_full = drive(name, 3)
+    assert [n for n, (one, other) in enumerate(zip(repeated, in_full, strict=True)) if one != other] == []
+
+
+@pytest.mark.parametrize("name", ["slope", "stack", "pendulum", "two_planets"])
+def test_steps_are_repeated_while_nothing_is_edited(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    world, full = load_scene(name), []
+    attempt = World.attempt
+    monkeypatch.setattr(
+        World, "attempt", lambda self, *given: full.append(self.time) or attempt(self, *given)
+    )
+    for _ in range(20):
+        world.step()
+    assert len(full) <= 1 + len(world.parts)
+    world.component(world.batch(Velocity, Mass).entities.tolist()[0], Velocity).linear *= 0.5
+    before = len(full)
+    world.step()
+    assert len(full) > before
