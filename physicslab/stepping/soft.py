@@ -99,7 +99,10 @@ class Soft(Stepper):
         span = Span(parts * state.substeps, h / parts / state.substeps, h, state.time, rested, finer)
         cause = self._open(state) if self.keeps_balance else -1
         self._note_energy(state)
+        logged = contacts.logged
         made = self.substeps.go_through(state, span, steps, cause)
+        if contacts.logged > logged + 1:
+            contacts.order_log(logged)
         if self.hooks:
             self._end_step(state, h)
             if state.samples is not None:
