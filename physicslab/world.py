@@ -11,6 +11,7 @@ from physicslab.contacts.arguments import motion_of
 from physicslab.contacts.islands import check_edits, follow_rows, wake_all
 from physicslab.ecs.config import MAX_TIME, MIN_TIME, PhysicsConfig, SimulationConfig
 from physicslab.ecs.fields import Field
+from physicslab.kernels.clock import time_after
 from physicslab.kernels.tiers import begin_run
 from physicslab.ode.closed_form import NoClosedForm
 from physicslab.state.masses import derive_masses, quiet
@@ -129,7 +130,7 @@ class World(Facade):
         with self.active():
             self._follow(numbers=True)
             self.advance(h, 1)
-        self.time += h
+        self.time = time_after(self.time, h)
 
     def advance(self, h: float, steps: int) -> int:
         """Make ``steps`` steps of ``h`` seconds, or fewer, with the best stepper; return how many.
@@ -140,10 +141,9 @@ class World(Facade):
         if not self.steps and self._mark is None and self.islands.divides:
             self.mark()
         repeat, self._repeat = self._repeat, None
-        if repeat is not None and repeat.h == h:
-            made = repeat.make(self, self._motion, steps)
-            if made:
-                return self._count(*made)
+        made = repeat.make(self, self._motion, steps) if repeat is not None and repeat.h == h else None
+        if made:
+            return self._count(*made)
         try:
             return self.attempt(h, steps, 1.0)
         except Overloaded as found:

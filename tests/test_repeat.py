@@ -94,11 +94,13 @@ def test_a_repeated_step_has_the_bits_of_one_made_in_full(name: str, monkeypatch
 
 @pytest.mark.parametrize("name", ["slope", "stack", "pendulum", "two_planets"])
 def test_steps_are_repeated_while_nothing_is_edited(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    world, full = load_scene(name), []
-    attempt = World.attempt
-    monkeypatch.setattr(
-        World, "attempt", lambda self, *given: full.append(self.time) or attempt(self, *given)
-    )
+    world, full, attempt = load_scene(name), list[float](), World.attempt
+
+    def counted(self: World, h: float, steps: int, bears: float) -> int:
+        full.append(self.time)
+        return attempt(self, h, steps, bears)
+
+    monkeypatch.setattr(World, "attempt", counted)
     for _ in range(20):
         world.step()
     assert len(full) <= 1 + len(world.parts)

@@ -7,6 +7,7 @@ from physicslab.contacts.islands import keep_places
 from physicslab.contacts.near_pairs import refill
 from physicslab.ecs.sentences import sentence
 from physicslab.kernels.accounts import CONTACT, ENERGY
+from physicslab.kernels.clock import time_after
 from physicslab.kernels.loading import working_ns
 from physicslab.state.masses import check_finite
 from physicslab.state.state import State
@@ -114,11 +115,14 @@ class Soft(Stepper):
             self.substeps.split.begin(state, span.dt)
         if not again:
             self._note_energy(state)
+        logged = state.contacts.logged
         made = self.substeps.go_through(state, span, steps, cause, again=again)
+        if state.contacts.logged > logged + 1:
+            state.contacts.order_log(logged)
         if self.hooks:
             self._end_step(state, span.dt)
             if state.samples is not None:
-                state.samples.take(state, state.time + made * span.dt)
+                state.samples.take(state, time_after(state.time, span.dt, made))
         keep_places(state)
         if len(state.joints):
             state.joints.force[:] = state.joints.impulse / (state.contacts.impulse_dt or span.h)
