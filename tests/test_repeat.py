@@ -30,7 +30,11 @@ def figures(world: World) -> list[bytes]:
     columns = [column.tobytes() for table in world.entity_index.tables.values() for column in table.columns]
     counts = world.time, world.steps, world.collisions, world.force_evaluations, world.substeps
     kept = world.account.sums, world.contacts.impacts, world.joints.force, world.sleep.asleep
-    return [*columns, repr((*counts, world.account.last)).encode(), *(one.tobytes() for one in kept)]
+    taken = [
+        getattr(one, name, None) for one in world.steppers.usable for name in ("energy_taken", "left_to_soft")
+    ]
+    told = repr((*counts, *taken, world.account.last)).encode()
+    return [*columns, told, *(one.tobytes() for one in kept)]
 
 
 def edit(world: World, random: Random) -> World:

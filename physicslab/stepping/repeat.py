@@ -38,12 +38,12 @@ class Repeat:
         The length of its steps [s].
     """
 
-    __slots__ = ("_blocks", "_bytes", "_schedule", "h", "stepper")
+    __slots__ = ("_began", "_blocks", "_bytes", "_schedule", "h", "stepper")
 
     def __init__(self, state: State, schedule: Schedule, stepper: Advancer, h: float) -> None:
         self.stepper, self.h, self._schedule = stepper, h, schedule
         self._blocks = [memoryview(block) for block in state.entity_index.blocks()]
-        self._bytes = b"".join(self._blocks)
+        self._bytes, self._began = b"".join(self._blocks), state.time
 
     @classmethod
     def of(
@@ -57,12 +57,14 @@ class Repeat:
             return None
         if not stepper.samples or schedule.observer is not None:
             return None
-        return cls(state, schedule, stepper, h) if stepper.goes_on(state) else None
+        compiled = all(kernel.compiled for kernel in stepper.kernels)
+        return cls(state, schedule, stepper, h) if compiled and stepper.goes_on(state) else None
 
     def holds(self, state: State, islands: Islands) -> bool:
-        """Whether nothing was edited since, and islands are not to be looked for."""
+        """Whether nothing was edited since, the clock among it, and islands are not to be looked for."""
         return (
-            not state.stale
+            state.time > self._began
+            and not state.stale
             and state.entity_index.is_synchronous()
             and b"".join(self._blocks) == self._bytes
             and state.account.start is not None
@@ -79,6 +81,7 @@ class Repeat:
         stepper, account = self.stepper, state.account
         if not stepper.ready(state, self.h):
             return None
+        state.compile(stepper.kernels)
         with StepTransaction(state, motion):
             self._schedule.run(Stage.PREPARE, state, self.h)
             if not stepper.keeps_balance:
@@ -93,5 +96,5 @@ class Repeat:
             if account.is_open:
                 close_account(state, self._schedule.forces)
             self._schedule.run(Stage.FINISH, state, self.h * made.steps)
-        self._bytes = b"".join(self._blocks)
+        self._bytes, self._began = b"".join(self._blocks), state.time
         return made, self if stepper.goes_on(state) else None
