@@ -12,6 +12,7 @@ from physicslab.contacts.arguments import motion_of
 from physicslab.contacts.islands import check_edits, follow_rows, wake_all
 from physicslab.ecs.config import MAX_TIME, MIN_TIME, PhysicsConfig, SimulationConfig
 from physicslab.ecs.fields import Field
+from physicslab.kernels.clock import time_after
 from physicslab.kernels.tiers import begin_run
 from physicslab.ode.closed_form import NoClosedForm
 from physicslab.state.masses import derive_masses, quiet
@@ -132,7 +133,7 @@ class World(Facade):
         with self.active():
             self._follow(numbers=True)
             self.advance(h, 1)
-        self.time += h
+        self.time = time_after(self.time, h)
 
     def advance(self, h: float, steps: int) -> int:
         """Make ``steps`` steps of ``h`` seconds, or fewer, with the best stepper; return how many.

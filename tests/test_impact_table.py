@@ -139,6 +139,19 @@ def test_derived_columns_are_those_of_a_bounce(way: str) -> None:
     assert (found.energy_lost >= -1e-12 * found.energy_lost.max()).all()
 
 
+def test_impacts_of_one_substep_are_in_the_order_of_time() -> None:
+    """They were in the order of pairs, so that the first that a sweep keeps was not the earliest."""
+    world = World(
+        physics=PhysicsConfig(gravity_mode="none"), simulation=SimulationConfig(substeps=1, **WAYS["soft"])
+    )
+    for height, gap in ((0.0, 0.06), (3.0, 0.03)):
+        circle(world, (0.0, height), radius=0.1, static=True)
+        circle(world, (0.2 + gap, height), radius=0.1, velocity=(-6.0, 0.0))
+    world.contacts.read = True
+    world.run(steps=2)
+    assert world.impacts["time"] == pytest.approx([0.005, 0.01], rel=1e-12)
+
+
 def test_the_time_since_a_pairs_last_impact() -> None:
     world = load_scene("drop")
     world.run(seconds=5.0)

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from physicslab import World
 from physicslab.components import (
     Gear,
+    Held,
     Layer,
     Mass,
     Pin,
@@ -320,3 +321,17 @@ def test_a_chain_that_does_not_fit_between_its_ends_gains_no_more_than_its_sprin
         world.step()
         assert measure_account(world).now.energy <= springs + 1.0
     assert max(joint.stretch for joint in joint_states(world)) <= max(0.0, span - 3.2) / 3 + 0.01
+
+
+def test_a_joint_between_a_hand_and_the_world_does_no_work() -> None:
+    """The impulse of before it was held stayed, and the hand seemed to work against it: 3 J in a second."""
+    world = bench()
+    ball = circle(world, (0.0, 2.0), radius=0.2, mass=1.0)
+    world.spawn(Rod(None, ball, anchor_a=(0.0, 3.0)))
+    world.run(steps=4)
+    world.add(ball, Held())
+    world.component(ball, Velocity).linear = (0.5, 1.0)
+    before = measure_account(world).energy
+    world.run(steps=6)
+    after = measure_account(world).energy
+    assert (after["joints"], after["hand"]) == (before["joints"], before["hand"])

@@ -131,6 +131,13 @@ class Contacts:
         found: NDArray[Any] = self.log[number % len(self.log)]
         return found
 
+    def order_log(self, first: int) -> None:
+        """Put the impacts from number ``first`` on into the order of time, as those of a substep are not."""
+        new = self.impacts_since(first)
+        if (np.diff(new["time"]) < 0.0).any():
+            places = np.arange(self.logged - len(new), self.logged) % len(self.log)
+            self.log[places] = new[np.argsort(new["time"], kind="stable")]
+
     @property
     def step_log(self) -> NDArray[Any]:
         """The log for the impacts of the contact step: of no length where they are not read."""

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from physicslab.integrators import Exhausted, StepTooSmall
 from physicslab.integrators.dop853 import MAX_COSTLY
+from physicslab.kernels.clock import time_after
 from physicslab.ode.closed_form import NoClosedForm
 from physicslab.ode.system import OdeSystem, steady_turn
 from physicslab.state.joint_figures import is_overloaded
@@ -89,16 +90,16 @@ class Flow(Stepper):
         if state.joints.breakable and (state.samples is None or state.samples.stride > 1):
             longest = whole  # loads are known at the ends of steps that are sampled
         most = MAX_COSTLY * max(1, math.ceil(h / _COSTLY_S))
-        made, span, left = 0, longest, most  # evaluations that are left to the step that is being made
+        made, span, short = 0, longest, h / parts / whole
+        left = most  # evaluations that the step may have that is being made
         try:
             while made < parts * steps * whole:
-                state.time = start + made * h / (parts * whole)
                 span = min(span, parts * steps * whole - made)
                 left = most if made % whole == 0 else left
                 divides = adaptive and span > 1 and left > _SPAN
                 self._ode.most = _SPAN if divides else left if adaptive else None
                 try:
-                    self._flow(state, h / parts * span / whole, max(1, span // whole), divides=divides)
+                    self._flow(state, short, span, max(1, span // whole), divides=divides)
                 except Overloaded as found:
                     found.steps += made // (parts * whole)
                     raise
@@ -109,12 +110,12 @@ class Flow(Stepper):
                     if made and parts == 1 and made % whole == 0:
                         return Advance(made // whole)  # the next call begins where it fails
                     raise
-                made += span
+                made, state.time = made + span, time_after(state.time, short, span)
                 step, rest = divmod(made, parts * whole)
                 if state.joints.breakable and not rest and step < steps and is_overloaded(state):
                     raise Overloaded(step)
                 if state.samples is not None:
-                    state.samples.take(state, start + made * h / (parts * whole))
+                    state.samples.take(state, state.time)
                 spent, begun = state.force_evaluations - begun, state.force_evaluations
                 span, left = min(2 * span, longest) if spent < _SPAN // 4 else span, left - spent
         finally:
@@ -140,12 +141,13 @@ class Flow(Stepper):
 
         return make
 
-    def _flow(self, state: State, span: float, steps: int, *, divides: bool) -> None:
-        method, ode = self._method, self._ode
+    def _flow(self, state: State, short: float, pieces: int, steps: int, *, divides: bool) -> None:
+        """Advance by ``pieces`` times ``short`` seconds, which count as ``steps``."""
+        method, ode, span = self._method, self._ode, short * pieces
         ode.gather(state)
         put_together(state, self._schedule.forces, ode)
         parts = 1 if method.chooses_steps else self._plan.substeps
-        count = 1 if method.chooses_steps else parts * steps
+        count, h = (1, span) if method.chooses_steps else (parts * steps, short / parts)
         start = time.perf_counter_ns()
         places, after = (np.zeros(0, np.int64), np.zeros(0))
         if state.samples is not None:
@@ -159,7 +161,7 @@ class Flow(Stepper):
             else:
                 self._sample_aside(state, after, packed)
         try:
-            made = method.flow(state, ode, span / count, count)
+            made = method.flow(state, ode, h, count)
         except StepTooSmall as error:
             if isinstance(error, Exhausted) and divides:
                 ode.undo(state)

@@ -14,6 +14,7 @@ from physicslab.ecs.component import Component
 from physicslab.ecs.context import create_numbered
 from physicslab.ecs.table import Table
 from physicslab.kernels import near_counts
+from physicslab.kernels.clock import time_after
 from physicslab.state.remainders import coordinate_keys
 from physicslab.state.state import State
 from physicslab.stepping.breaks import Overloaded
@@ -122,12 +123,12 @@ class Island:
                 # Smooth motion depends on where it is divided, and that on what else there is.
                 single = self.touches and isinstance(self.world.stepper_for(h), Flow)
                 try:
-                    done += self.world.advance(h, 1 if single else steps - done)
+                    made = self.world.advance(h, 1 if single else steps - done)
+                    done, own.time = done + made, time_after(own.time, h, made)
                 except Overloaded as found:
                     steps = done + found.steps - 1
                     if not steps:
                         raise
-                own.time = time + done * h
         if samples is not None and part is not None:
             samples.join(part, *self._with(state, driven))
             own.samples = None

@@ -18,6 +18,7 @@ from physicslab.contacts.arguments import motion_of
 from physicslab.contacts.kept import KeptContacts, carry_sleep
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.sentences import sentence
+from physicslab.kernels.clock import time_after
 from physicslab.state.masses import Diverged
 from physicslab.state.remainders import Remainders
 from physicslab.state.state import State
@@ -135,8 +136,8 @@ class Islands:
         try:
             while made < steps and self.members:
                 state.account.is_open = opened
-                made += self._advance(state, h, 1).steps
-                state.time = start + made * h
+                done = self._advance(state, h, 1).steps
+                made, state.time = made + done, time_after(state.time, h, done)
                 state.checkpoint.take(motion_of(state), state.counts)
                 state.account.begin_step()
                 self.follow(state)
@@ -170,8 +171,7 @@ class Islands:
                     island.go(state, state.time, h, count, self._driven(state, island))
                 parts = max(parts, *(island.state.step_divisions for island in self.members))
                 join_logs(state, [island.state for island in touching], logged)
-                made += count
-                state.time = start + made * h
+                made, state.time = made + count, time_after(state.time, h, count)
                 self._write_back(state)
                 if made < steps and not self._join_near(state, h):
                     self._examine(state)

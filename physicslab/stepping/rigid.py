@@ -16,6 +16,7 @@ from physicslab.ecs.sentences import sentence
 from physicslab.kernels import direct_entry
 from physicslab.kernels.accounts import CONTACT, FRICTION, HAND, JOINTS, MOTORS
 from physicslab.kernels.broad import near_pairs
+from physicslab.kernels.clock import time_after
 from physicslab.kernels.joints.rows import forces_of
 from physicslab.kernels.rigid import features as F
 from physicslab.kernels.rigid import joined, step
@@ -121,17 +122,17 @@ class Rigid(Stepper):
         self._ode.gather(state)
         put_together(state, self._schedule.forces, self._ode)
         scene = self._scene(state)
-        figures, last, made = self._figures(state, h), None, 0
+        figures, last, made, at = self._figures(state, h), None, 0, state.time
         rests = figures is not None and figures == self._resting
         while made < steps:
             if rests:
                 for _ in range(steps - made):
                     self._motion.rest(h)
                 if state.samples is not None:
-                    self._sample(state.samples, state.time + made * h, (steps - made) * h)
+                    self._sample(state.samples, at, (steps - made) * h)
                 made = steps
                 break
-            step = self._step(scene, state, state.time + made * h, h, parts)
+            step = self._step(scene, state, at, h, parts)
             if step.by_impulses and self._gives_up:
                 if made:
                     break  # the next call begins where it gives up
@@ -145,7 +146,8 @@ class Rigid(Stepper):
             if state.joints.breakable and made < steps:
                 self._check_loads(scene, state, step, made)
             if state.samples is not None:
-                self._sample(state.samples, state.time + (made - 1) * h, h)
+                self._sample(state.samples, at, h)
+            at = time_after(at, h)
         self._resting = None
         if made:
             self._ode.scatter(state, 0.0)

@@ -11,6 +11,7 @@ from typing import Protocol
 from physicslab.ecs.component import InvalidValue
 from physicslab.ecs.config import MIN_TIME, SimulationConfig
 from physicslab.ecs.fields import Field
+from physicslab.kernels.clock import time_after
 from physicslab.kernels.tiers import begin_run
 from physicslab.state.masses import Diverged, quiet
 from physicslab.state.samples import Samples, moving_rows
@@ -180,14 +181,16 @@ def strides_as_it_goes(
     if not length.steps:
         world.time += length.seconds  # which is nothing, or too short for anything to move
     while done < length.steps:
-        before, began = world.steps, time.monotonic()
+        before, clock, began = world.steps, world.time, time.monotonic()
         try:
             with world.active():
-                done += _go_on(world, length, done, stride, at_once, patience < math.inf)
+                made = _go_on(world, length, done, stride, at_once, patience < math.inf)
         except Diverged:
-            world.time = start + (done + world.steps - before) * length.dt
+            world.time = time_after(clock, length.dt, world.steps - before)
             raise
-        world.time = start + length.elapsed(done)
+        done += made
+        exactly = seconds is not None and done == length.steps
+        world.time = start + length.seconds if exactly else time_after(world.time, length.dt, made)
         if first is not None:
             first.foresee(done / length.steps)
         taken = time.monotonic() - began

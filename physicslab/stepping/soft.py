@@ -7,6 +7,7 @@ from physicslab.contacts.islands import keep_places
 from physicslab.contacts.near_pairs import refill
 from physicslab.ecs.sentences import sentence
 from physicslab.kernels.accounts import CONTACT, ENERGY
+from physicslab.kernels.clock import time_after
 from physicslab.kernels.loading import working_ns
 from physicslab.state.masses import check_finite
 from physicslab.state.state import State
@@ -98,11 +99,14 @@ class Soft(Stepper):
         span = Span(parts * state.substeps, h / parts / state.substeps, h, state.time, rested, finer)
         cause = self._open(state) if self.keeps_balance else -1
         self._note_energy(state)
+        logged = contacts.logged
         made = self.substeps.go_through(state, span, steps, cause)
+        if contacts.logged > logged + 1:
+            contacts.order_log(logged)
         if self.hooks:
             self._end_step(state, h)
             if state.samples is not None:
-                state.samples.take(state, state.time + made * h)
+                state.samples.take(state, time_after(state.time, h, made))
         keep_places(state)
         if len(state.joints):
             state.joints.force[:] = state.joints.impulse / (contacts.impulse_dt or span.h)

@@ -24,6 +24,7 @@ from physicslab.kernels import Plain
 from physicslab.kernels.arguments import Plan, Softness
 from physicslab.kernels.broad import grid, leaving, near_pairs
 from physicslab.kernels.broad.fat_boxes import fat_boxes
+from physicslab.kernels.clock import time_after
 from physicslab.kernels.loading import direct_entry, working_ns
 from physicslab.kernels.solver import soft
 from physicslab.kernels.solver.finer import needed_factor
@@ -147,13 +148,13 @@ class Substeps:
                     part = 0
                     self._end_step(state, why, span)
                     if state.samples is not None:
-                        state.samples.take(state, span.start + made * span.dt)
+                        state.samples.take(state, time_after(span.start, span.dt, made))
                     if span.finer or all_asleep(state) or self._overloaded(state, span):
                         break
                 elif why in (soft.OTHER_SUBSTEPS, soft.OVERLOADED):
                     break
                 elif why != soft.ALL:
-                    began = span.start + made * span.dt
+                    began = time_after(span.start, span.dt, made)
                     state.moment = began + (substep + self._course[4]) * span.h
                     state.time = began + substep * span.h + self._times[part][1] * span.h
                     self._leave(state, why, part, span.h)
@@ -162,7 +163,7 @@ class Substeps:
                         substep, part = substep + 1, 0
                         made += substep == span.substeps
         except BaseException:
-            before += made * span.dt
+            before = time_after(before, span.dt, made)
             state.steps += made
             raise
         finally:
@@ -194,7 +195,7 @@ class Substeps:
         """Return the numbers that the loop goes by after ``made`` steps."""
         simulation = state.simulation
         return (
-            span.substeps, simulation.iterations or 0, span.h, span.dt, span.start + made * span.dt,
+            span.substeps, simulation.iterations or 0, span.h, span.dt, time_after(span.start, span.dt, made),
             span.rested, first, simulation.dt / simulation.substeps, span.finer,
         )  # fmt: skip
 
@@ -231,7 +232,7 @@ class Substeps:
         contacts, (substep, part, first, cause) = state.contacts, where
         plan, arguments = self._plan(state, span, made, first), self._arguments(state, span.h)
         samples = None if self._hooked else state.samples
-        due = sampled(samples, span.start + made * span.dt, span.dt, steps)
+        due = sampled(samples, time_after(span.start, span.dt, made), span.dt, steps)
         why, done, substep, part, finished_impacts, impacts, evaluations, contacts.impulse_dt = self._entry(
             steps, substep, part, plan, self._course, cause, *arguments, due
         )

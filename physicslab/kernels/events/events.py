@@ -13,6 +13,7 @@ from typing import NamedTuple
 from physicslab.kernels import Plain, Rows, Vectors, always_inlined, inlined, kernel
 from physicslab.kernels.accounts import IMPACTS
 from physicslab.kernels.arguments import Bounds, Inverse, Materials, Motion, Sampled, take_sample
+from physicslab.kernels.clock import next_time
 from physicslab.kernels.constraint.pair import frame_of, inverse_mass_of
 from physicslab.kernels.events.encounter import bend_of, gap_of, meeting_of, time_apart, touch_pair
 from physicslab.kernels.events.path import advance_to, begin, place, seen_from
@@ -282,14 +283,14 @@ def run_events(
                 why = TOO_MANY_IMPACTS
                 break
             first, second = manifolds[p].a, manifolds[p].b
-            why, new = _meet(flight, p, mixed, log, logged + impacts, start + made * span, now, low, span)
+            why, new = _meet(flight, p, mixed, log, logged + impacts, start, now, low, span)
             impacts += new
         if why == CAME_TO_REST and span - now <= _SHORT * span:
             why, now, low = DONE, span, 0.0
         _end_all(flight, now, low)
         if why != DONE:
             return made, impacts, 0, why, now
-        made += 1
+        made, start = made + 1, next_time(start, span)
         take_sample(flight.motion, samples, made)
     return made, impacts, impacts - earlier, why, 0.0
 

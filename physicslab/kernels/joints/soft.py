@@ -191,10 +191,16 @@ def _bounded(joints: Joints, k: int, impulse: float) -> float:
 
 @inlined
 def warm_start_joints(joints: Joints, motion: Motion, inverse: Inverse, scale: float, h: float) -> None:
-    """Apply the impulses of the last substep, ``scale`` times as large, as far as ``h`` seconds allow."""
+    """Apply the impulses of the last substep, ``scale`` times as large, as far as ``h`` seconds allow.
+
+    Ends that are both driven keep none, which would go on doing work; what sleeps keeps its own.
+    """
     for k in range(len(joints.state)):
         joints.state[k, B.CAP] = h * joints.strongest[joints.nodes[k, B.ROW]]
         first, second = _impulses(joints, k)
+        moves = joints.state[k, B.BEFORE] != 0.0 or joints.state[k, B.BEFORE + 1] != 0.0
+        if moves and not can_move(joints, k, inverse):
+            first = second = 0.0
         first, second = _bounded(joints, k, scale * first), scale * second
         _set_impulses(joints, k, first, second)
         _apply(joints, k, motion, inverse, first, second)

@@ -3,6 +3,7 @@
 import numpy as np
 
 from physicslab.kernels import Numbers, Rows, allocating_kernel
+from physicslab.kernels.clock import step_grid
 from physicslab.kernels.forces.budget import CLOCK, END
 from physicslab.kernels.forces.force_calls import Calls, accelerate
 from physicslab.kernels.ode.compensated import add
@@ -19,7 +20,7 @@ def rk4(
     takes what causes give (:mod:`physicslab.kernels.forces.budget`).
     """
     n, clock = len(inverse_mass), places[CLOCK]
-    start = q[clock]
+    begin, first = step_grid(q[clock], h)
     stage_q, stage_v, acceleration = q.copy(), v.copy(), np.empty(len(q))
     q_sum, v_sum = np.empty(n), np.empty(n)
     for step in range(steps):
@@ -28,7 +29,7 @@ def rk4(
             q_sum[i] = v_sum[i] = 0.0
             stage_q[i], stage_v[i] = q[i], v[i]
         for stage in range(4):
-            stage_q[clock] = start + (step + node) * h
+            stage_q[clock] = begin + (first + step + node) * h
             accelerate(stage_q, stage_v, acceleration, inverse_mass, damping, calls)
             weight = h / 6.0 if stage == 0 or stage == 3 else h / 3.0
             node = 1.0 if stage == 2 else 0.5
@@ -43,5 +44,5 @@ def rk4(
         for i in range(n):
             q[i], q_low[i] = add(q[i], q_low[i], q_sum[i])
             v[i], v_low[i] = add(v[i], v_low[i], v_sum[i])
-    q[clock] = start + steps * h
+    q[clock] = begin + (first + steps) * h
     return 4 * steps

@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from physicslab.kernels import Numbers, Rows, Vectors, allocating, allocating_kernel, inlined
+from physicslab.kernels.clock import step_grid
 from physicslab.kernels.forces.budget import CLOCK, DAMPED
 from physicslab.kernels.forces.force_calls import Calls, accelerate_over
 from physicslab.kernels.ode.compensated import add
@@ -230,7 +231,7 @@ def implicit_midpoint(
     velocity. Where that is not the mean of both ends, dampers and drag have done the work that this makes.
     """
     n, m, clock = len(inverse_mass), len(order), places[CLOCK]
-    start, given = q[clock], np.zeros(len(q) - clock - 1)
+    (begin, first), given = step_grid(q[clock], h), np.zeros(len(q) - clock - 1)
     stage_q, x, miss, shifted = q.copy(), np.zeros(m), np.empty(m), np.empty(m)
     acceleration, stack = np.empty(len(q)), np.zeros(3 * len(q))
     matrix, pivots = np.zeros((m, 3 * band + 1)), np.zeros(m, np.int64)
@@ -239,7 +240,7 @@ def implicit_midpoint(
         done, part = 0, _PARTS
         while done < _PARTS:
             span = h * part / _PARTS
-            stage_q[clock] = start + (step + (done + 0.5 * part) / _PARTS) * h
+            stage_q[clock] = begin + (first + step + (done + 0.5 * part) / _PARTS) * h
             iterations, tried = _search(
                 q, v, x, stage_q, stack, acceleration, inverse_mass, damping, calls, resistances, span, miss,
                 shifted, order, band, matrix, pivots, known, given,

@@ -6,6 +6,7 @@ import numpy as np
 
 from physicslab.kernels import Numbers, Rows, allocating_kernel, inlined
 from physicslab.kernels.accounts import book
+from physicslab.kernels.clock import step_grid
 from physicslab.kernels.forces.budget import CLOCK, END, KEPT, book_kick
 from physicslab.kernels.forces.force_calls import Calls, accelerate
 from physicslab.kernels.ode.compensated import add
@@ -56,7 +57,7 @@ def split(
     at ``field``.
     """
     n, clock = len(inverse_mass), places[CLOCK]
-    start, kept = q[clock], len(places) > KEPT
+    (begin, first), kept = step_grid(q[clock], h), len(places) > KEPT
     acceleration = np.empty(len(q))
     undamped = np.empty(0)
     known, evaluations = False, 0
@@ -66,7 +67,7 @@ def split(
             kick = kicks[stage] * h
             if kick != 0.0:
                 if not known:
-                    q[clock] = start + (step + moved) * h
+                    q[clock] = begin + (first + step + moved) * h
                     accelerate(q, v, acceleration, inverse_mass, undamped, calls)
                     known = True
                     evaluations += 1
@@ -97,5 +98,5 @@ def split(
                 for i in range(2 * len(gyration), n):
                     q[i], q_low[i] = add(q[i], q_low[i], drift * v[i])
                 known = False
-    q[clock] = start + steps * h
+    q[clock] = begin + (first + steps) * h
     return evaluations

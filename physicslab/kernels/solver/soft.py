@@ -29,6 +29,7 @@ from physicslab.kernels.arguments import (
     take_sample,
 )
 from physicslab.kernels.broad.fat_boxes import all_inside
+from physicslab.kernels.clock import next_time
 from physicslab.kernels.energy import moments_of_mass, motion_totals
 from physicslab.kernels.forces.force_calls import add_forces
 from physicslab.kernels.forces.gravity import uniform_gravity
@@ -193,7 +194,7 @@ def _advance(
     h, counts, account = plan.h, near.counts, near.account
     damped = damping[0] != 0.0 or damping[1] != 0.0
     done, bounced, finished, evaluations, evaluated = 0, 0, 0, 0, 0
-    weighed, total, mx, my = False, 0.0, 0.0, 0.0
+    weighed, total, mx, my, began = False, 0.0, 0.0, 0.0, plan.time
     now = ticks()
     while done < steps:
         if substep == 0 and part == 0:
@@ -226,8 +227,7 @@ def _advance(
                 if what == UNIFORM:
                     uniform_gravity(acting.force, gravity.mass, gravity.inverse_mass, gravity.gx, gravity.gy)
                 else:
-                    began = plan.time + done * plan.dt + substep * h
-                    drifted = began + course.times[DRIFTED, part] * h
+                    drifted = began + substep * h + course.times[DRIFTED, part] * h
                     pack_state(position, angle, linear, angular, drifted, packed.state)
                     add_forces(packed.state[0], packed.state[1], acting.pull, packed.calls)
                 now = charge(cost, GRAVITY, now)
@@ -285,7 +285,7 @@ def _advance(
                     why = WAKE_PENDING
                 now = charge(cost, SLEEP, now)
             elif what == IMPACTS:
-                moment = plan.time + done * plan.dt + (substep + course.middle) * h
+                moment = began + (substep + course.middle) * h
                 came = resolve_all_impacts(
                     near, motion, shapes, inverse, acting, Log(impacts, moment, account), span,
                     course.start * span, course.end * span,
@@ -297,7 +297,7 @@ def _advance(
                 if is_outdated(near, motion, shapes, fat, span, gravity.margin):
                     why = PAIRS_STALE
             elif what == LATER_IMPACTS:
-                moment = plan.time + done * plan.dt + (substep + course.middle) * h
+                moment = began + (substep + course.middle) * h
                 came = resolve_later_impacts(
                     near, motion, shapes, materials, inverse, acting, fat, Log(impacts, moment, account),
                     span, course.start * span, course.end * span, gravity.margin,
@@ -344,6 +344,7 @@ def _advance(
             if failed:
                 return DIVERGED, done, substep, part, finished, bounced, evaluated, impulse_dt
             done, finished, pending = done + 1, bounced, ALL
+            began = next_time(began, plan.dt)
             if sleepers.on:
                 check = count_rest(
                     linear, angular, shapes.reach, gravity.inverse_mass, sub_integrated, sleepers.asleep,
