@@ -116,7 +116,7 @@ class PygameCanvas:
         self, start: Points, end: Points, colour: Colour | NDArray[np.uint8], width: float | Numbers = 1.0,
         opacity: float | Numbers = 1.0,
     ) -> None:  # fmt: skip
-        """Draw lines with round ends; each may have a colour (n, 3), a width or an opacity (n,) of its own."""
+        """Draw lines with round ends; each may have its own colour (n, 3), width or opacity (n,)."""
         colours = np.broadcast_to(np.array(colour, np.uint8), (len(start), 3))
         widths, opacities = (np.zeros(len(start)) + one for one in (width, opacity))
         paint = _painter("paint_lines")
