@@ -215,7 +215,7 @@ def test_it_is_painted_smoothly_and_before_that_roughly() -> None:
     shapes = Rounded(corners, np.array([2]), np.array([12.0]))
     for draw in (
         PygameCanvas(surface).rounded,
-        lambda shapes, look: draw_rounded(surface, shapes, look, 1.6),
+        lambda shapes, look: draw_rounded(surface, shapes, np.zeros(1), look, 1.6),
     ):
         surface.fill((0, 0, 0))
         draw(shapes, look)

@@ -263,20 +263,17 @@ def forces_by_hand() -> None:
 
 def drawn() -> None:
     pixels, two = np.full((24, 40), 0x102030, np.uint32), np.array((0x40A0F0, 0x8090A0), np.uint32)
-    centre, turned = np.array(((9.3, 8.1), (30.0, 15.5))), np.array((0.4, 2.0))
-    sizes = np.array(((6.5, 6.0), (9.0, 9.5)))
-    rims = two[::-1].copy()
-    capsules = np.concatenate(
-        (centre - 3.0, centre + 3.0, np.repeat(centre + 3.0, 6, axis=0).reshape(2, -1)), axis=1
-    )
-    rounded = np.array((2.0, 4.5))
+    centre, sizes = np.array(((9.3, 8.1), (30.0, 15.5))), np.array(((6.5, 6.0), (9.0, 9.5)))
+    rims, turned = two[::-1].copy(), np.array((0.4, 2.0))
+    corners = np.repeat(centre[:, None], 8, axis=1)
+    corners[1, :4] += ((7.0, -6.0), (-7.0, -8.0), (-7.0, 6.0), (6.0, 6.0))
     for kind in range(0, len(finishes.FINISHES), 2):
-        finish = np.array((kind, kind + 1))
-        raster.paint_discs(pixels, centre, sizes[:, 0].copy(), turned, two, rims, finish, 1.6, 0.3)
-        raster.paint_boxes(pixels, centre, sizes, turned, two, rims, finish, 1.6, 0.3)
-        raster.paint_rounded(pixels, capsules, np.array((2, 2)), rounded, two, rims, finish, 1.6, 0.3)
-    raster.paint_lines(pixels, centre, sizes, 2.5, 0x123456, np.array((1.0, 0.3)))
-    raster.paint_strokes(pixels, centre - 12.0, sizes + 30.0, np.array((1.0, 7.0)), two)
+        for count, rounding in ((1, (6.5, 9.0)), (4, (0.0, 2.5))):  # discs, then what is at most a polygon
+            shapes = corners.reshape(2, -1), np.array((1, count)), np.array(rounding), turned
+            finish, room = np.array((kind, kind + 1)), np.empty((8, 5))
+            raster.paint_rounded(pixels, *shapes, two, rims, finish, 1.6, 0.3, room)
+    widths, opacities = np.array((2.5, 7.0)), np.array((1.0, 0.3))
+    raster.paint_lines(pixels, centre, sizes + 30.0, widths, opacities, two)
     assert len(np.unique(pixels)) > 20
 
 

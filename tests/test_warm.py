@@ -92,7 +92,7 @@ def test_leaving_early_stops_the_workers(mark: Path) -> None:
 def test_kernels_have_names_of_their_own() -> None:
     names = load_all()
     assert len(set(names)) == len(names)
-    assert "physicslab.kernels.raster.paint_discs" in names
+    assert "physicslab.kernels.raster.paint_rounded" in names
 
 
 def plant(root: Path, names: Iterable[str]) -> None:

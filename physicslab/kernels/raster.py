@@ -1,4 +1,4 @@
-"""Discs, boxes, rounded polygons and lines with smooth edges, painted into an array of pixels.
+"""Rounded polygons, discs and boxes among them, and lines with smooth edges, painted into pixels.
 
 Coverage comes from the signed distance to the outline [px], so position, size and angle are exact to a
 fraction of a pixel. Raised shapes are lit from above, and may cast a soft shadow. Pixels are 32 bits of
@@ -74,40 +74,6 @@ def _rimmed(depth: float, band: float, inside: int, edge: int) -> int:
 
 
 @inlined
-def _disc_edge(
-    pixels: Pixels, row: int, first: int, end: int,
-    x: float, dy: float, r: float, band: float, inside: int, edge: int,
-) -> None:  # fmt: skip
-    """Paint a run of a disc's row that holds rim, or half-covered pixels."""
-    for column in range(first, end):
-        dx = column + 0.5 - x
-        depth = r - math.sqrt(dx * dx + dy * dy)
-        colour = _rimmed(depth, band, inside, edge)
-        if depth < 0.5:
-            colour = mixed(int(pixels[row, column]), colour, max(depth + 0.5, 0.0))
-        pixels[row, column] = colour
-
-
-@inlined
-def _shadow_of_disc(pixels: Pixels, x: float, y: float, r: float, opacity: float) -> None:
-    """Paint what is seen of a disc's shadow around it."""
-    height, width = pixels.shape
-    outer, own, middle = r + F.SHADOW_SOFT, r - 0.5, y + F.SHADOW_DOWN
-    for row in range(_pixel(middle - outer, height), _pixel(middle + outer, height)):
-        dy, from_own = row + 0.5 - middle, row + 0.5 - y
-        reach = math.sqrt(max(outer * outer - dy * dy, 0.0))
-        core = math.sqrt(max(own * own - from_own * from_own, 0.0))
-        for part in range(2):
-            first = _pixel(x - reach, width) if part == 0 else _pixel(x + core, width)
-            end = _pixel(x - core, width) if part == 0 else _pixel(x + reach, width)
-            for column in range(first, end):
-                dx = column + 0.5 - x
-                away = math.sqrt(dx * dx + dy * dy) - r
-                share = opacity * unit(0.5 - 0.5 * away / F.SHADOW_SOFT)
-                pixels[row, column] = mixed(int(pixels[row, column]), F.BLACK, share)
-
-
-@inlined
 def _wedge(pixels: Pixels, x: float, y: float, r: float, angle: float) -> None:
     """Paint a bright sector from the middle of a disc towards its angle."""
     height, width = pixels.shape
@@ -127,42 +93,150 @@ def _wedge(pixels: Pixels, x: float, y: float, r: float, angle: float) -> None:
             pixels[row, column] = mixed(int(pixels[row, column]), F.WHITE, F.WEDGE_SHARE * cover)
 
 
-@kernel
-def paint_discs(
-    pixels: Pixels, centre: Vectors, radius: Numbers, angle: Numbers,
-    fill: Colours, rim: Colours, finish: Rows, rim_width: float, shadow: float,
-) -> None:  # fmt: skip
-    """Paint discs with a rim, lit by their finish; a wedge shows how far each has turned that is not flat.
+_ALONG_X, _ALONG_Y, _BESIDE, _FROM, _LENGTH = range(5)
+"""A side: its direction, the place of its line across that and of its beginning along it, its length [px]."""
 
-    Lengths are in px, ``angle`` is counter-clockwise on the screen [rad]; ``shadow`` is the opacity of the
-    shadows, which lie below all of the discs.
+
+@inlined
+def _take_sides(corners: Vectors, i: int, count: int, sides: Vectors) -> tuple[tuple[float, ...], float]:
+    """Fill in the sides of a core; return its left, right, top and bottom, and half of its least side [px].
+
+    One vertex has no side: its place stands where the direction of the first one would be.
+    """
+    left, right, top, bottom, least = math.inf, -math.inf, math.inf, -math.inf, math.inf
+    for k in range(count):
+        x, y, end = corners[i, 2 * k], corners[i, 2 * k + 1], 2 * (k + 1) if k + 1 < count else 0
+        left, right, top, bottom = min(left, x), max(right, x), min(top, y), max(bottom, y)
+        along_x, along_y = corners[i, end] - x, corners[i, end + 1] - y
+        length = math.sqrt(along_x * along_x + along_y * along_y)
+        least, share = min(least, length), 1.0 / length if length > 0.0 else 0.0
+        along_x, along_y = along_x * share, along_y * share
+        sides[k, _ALONG_X], sides[k, _ALONG_Y], sides[k, _LENGTH] = along_x, along_y, length
+        sides[k, _BESIDE], sides[k, _FROM] = along_x * y - along_y * x, along_x * x + along_y * y
+    if count == 1:
+        sides[0, _ALONG_X], sides[0, _ALONG_Y] = left, top
+    return (left, right, top, bottom), 0.5 * least
+
+
+@inlined
+def _beyond_core(px: float, py: float, sides: Vectors, count: int) -> float:
+    """Return how far a place is from a core [px], negative within; y points down."""
+    if count == 1:
+        dx, dy = px - sides[0, _ALONG_X], py - sides[0, _ALONG_Y]
+        return math.sqrt(dx * dx + dy * dy)
+    farthest, side = -math.inf, 0
+    for k in range(count):
+        away = sides[k, _ALONG_X] * py - sides[k, _ALONG_Y] * px - sides[k, _BESIDE]
+        if away > farthest:
+            farthest, side = away, k
+    if farthest <= 0.0:
+        return farthest
+    along = sides[side, _ALONG_X] * px + sides[side, _ALONG_Y] * py - sides[side, _FROM]
+    past = max(-along, along - sides[side, _LENGTH], 0.0)
+    return math.sqrt(farthest * farthest + past * past)
+
+
+@inlined
+def _run(
+    sides: Vectors, count: int, out: float, y: float, low: float, high: float, width: int
+) -> tuple[int, int]:
+    """Return the pixels [first, end) of a row, at y, that lie within a core whose sides are moved by ``out``.
+
+    They are looked for from ``low`` to ``high`` [px]. A core of one vertex is a disc of that radius.
+    """
+    if count == 1:
+        dy = y - sides[0, _ALONG_Y]
+        reach = math.sqrt(max(out * abs(out) - dy * dy, 0.0))
+        return _pixel(sides[0, _ALONG_X] - reach, width), _pixel(sides[0, _ALONG_X] + reach, width)
+    for k in range(count):
+        slope, room = sides[k, _ALONG_Y], out + sides[k, _BESIDE] - sides[k, _ALONG_X] * y
+        if slope < -1e-9:
+            high = min(high, -room / slope)
+        elif slope > 1e-9:
+            low = max(low, -room / slope)
+        elif room < 0.0:
+            high = low
+    return _pixel(low, width), _pixel(max(low, high), width)
+
+
+@inlined
+def _shadow(
+    pixels: Pixels, sides: Vectors, count: int, radius: float, bounds: tuple[float, ...], opacity: float
+) -> None:
+    """Paint what is seen of a body's shadow around it."""
+    height, width = pixels.shape
+    left, right, top, bottom = bounds
+    reach, own = radius + F.SHADOW_SOFT, radius - 0.5 if count == 1 else min(radius - 0.5, 0.0)
+    low, high = left - reach, right + reach
+    for row in range(
+        _pixel(top + F.SHADOW_DOWN - reach, height), _pixel(bottom + F.SHADOW_DOWN + reach, height)
+    ):
+        py = row + 0.5
+        first, last = _run(sides, count, reach, py - F.SHADOW_DOWN, low, high, width)
+        begin, end = _run(sides, count, own, py, low, high, width)
+        if begin >= end:
+            begin = end = last
+        for part in range(2):
+            start, stop = (first, min(begin, last)) if part == 0 else (max(end, first), last)
+            for column in range(start, max(start, stop)):
+                px = column + 0.5
+                if own == radius - 0.5 or _beyond_core(px, py, sides, count) > radius - 0.5:
+                    away = _beyond_core(px, py - F.SHADOW_DOWN, sides, count) - radius
+                    share = opacity * unit(0.5 - 0.5 * away / F.SHADOW_SOFT)
+                    pixels[row, column] = mixed(int(pixels[row, column]), F.BLACK, share)
+
+
+@kernel
+def paint_rounded(
+    pixels: Pixels, corners: Vectors, vertices: Rows, radius: Numbers, angle: Numbers,
+    fill: Colours, rim: Colours, finish: Rows, rim_width: float, shadow: float, sides: Vectors,
+) -> None:  # fmt: skip
+    """Paint rounded polygons with a rim, lit by their finish: of one vertex discs, of four boxes.
+
+    ``corners`` (n, 16) holds x and y of each vertex in turn [px], counter-clockwise as it is seen; ``angle``
+    is counter-clockwise on the screen [rad], and seen by the texture and by the wedge of a disc that is not
+    flat; ``shadow`` is the opacity of the shadows, which lie below all of the shapes.
+    ``sides`` (8, 5) is room for the sides of one of them.
     """
     height, width = pixels.shape
     for i in range(len(radius) if shadow > 0.0 else 0):
-        if radius[i] >= F.SHADOW_FROM:
-            _shadow_of_disc(pixels, centre[i, 0], centre[i, 1], radius[i], shadow)
+        bounds, half = _take_sides(corners, i, vertices[i], sides)
+        if radius[i] + half >= F.SHADOW_FROM:
+            _shadow(pixels, sides, vertices[i], radius[i], bounds, shadow)
     for i in range(len(radius)):
-        x, y, r, kind = centre[i, 0], centre[i, 1], radius[i], finish[i]
-        inside, edge = int(fill[i]), int(rim[i])
+        count, r, inside, edge, kind = vertices[i], radius[i], int(fill[i]), int(rim[i]), finish[i]
         bright, dim = lit(inside, kind), shaded(inside, kind)
+        (left, right, top, bottom), half = _take_sides(corners, i, count, sides)
+        x, y, reach = 0.0, 0.0, r + 0.5
+        for k in range(count):
+            x, y = x + corners[i, 2 * k] / count, y + corners[i, 2 * k + 1] / count
         c, s = math.cos(angle[i]), math.sin(angle[i])
-        band = min(rim_width, 0.35 * r)
-        outer, inner = r + 0.5, max(r - band - 0.5, 0.0)
-        per_square = 1.0 / (F.LIGHT_REACH * r * r)
-        for row in range(_pixel(y - outer, height), _pixel(y + outer, height)):
-            dy = row + 0.5 - y
-            reach = math.sqrt(max(outer * outer - dy * dy, 0.0))
-            core = math.sqrt(max(inner * inner - dy * dy, 0.0))
-            left, right = _pixel(x - reach, width), _pixel(x + reach, width)
-            core_left, core_right = _pixel(x - core, width), _pixel(x + core, width)
+        band = min(rim_width, 0.35 * (r + half))
+        core = r - band - 0.5 if count == 1 else min(r - band - 0.5, 0.0)
+        is_round = count == 1 and kind != F.FLAT
+        per_square = 1.0 / (F.LIGHT_REACH * r * r) if is_round else 0.0
+        deep = max(F.DEEP, bottom - top + 2.0 * r) if kind == F.GROUND else bottom - top + 2.0 * r
+        for row in range(_pixel(top - reach, height), _pixel(bottom + reach, height)):
+            py, dy = row + 0.5, row + 0.5 - y
+            first, end = _run(sides, count, reach, py, left - reach, right + reach, width)
+            begin, last = _run(sides, count, core, py, left - reach, right + reach, width)
+            if begin >= last:
+                begin = last = end
             below = dy + F.LIGHT_Y * r
-            level = mixed(bright, dim, unit((below * below + 0.5 * r * r) * per_square))
-            _disc_edge(pixels, row, left, core_left, x, dy, r, band, level, edge)
-            if kind == F.FLAT:
-                for column in range(core_left, core_right):
-                    pixels[row, column] = inside
-            else:
-                for column in range(core_left, core_right):
+            share = (below * below + 0.5 * r * r) * per_square if is_round else (py - top + r) / deep
+            level = mixed(bright, dim, unit(share))
+            for part in range(2):
+                for column in range(first if part == 0 else last, begin if part == 0 else end):
+                    dx, under = column + 0.5 - x, int(pixels[row, column])
+                    depth = r - _beyond_core(column + 0.5, py, sides, count)
+                    if depth > -0.5:
+                        colour = level
+                        if kind >= F.GROUND:
+                            colour = textured(kind, c * dx - s * dy, s * dx + c * dy, level, edge, under)
+                        colour = _rimmed(depth, band, colour, edge)
+                        pixels[row, column] = mixed(under, colour, unit(depth + 0.5))
+            if is_round:
+                for column in range(begin, last):
                     dx = column + 0.5 - x
                     away = dx + F.LIGHT_X * r
                     colour = mixed(bright, dim, unit((away * away + below * below) * per_square))
@@ -170,198 +244,28 @@ def paint_discs(
                         u, v = c * dx - s * dy, s * dx + c * dy
                         colour = textured(kind, u, v, colour, edge, int(pixels[row, column]))
                     pixels[row, column] = colour
-            _disc_edge(pixels, row, core_right, right, x, dy, r, band, level, edge)
-        if r >= F.WEDGE_FROM and kind >= F.LIT and kind != F.GROUND:
-            _wedge(pixels, x, y, r, angle[i])
-
-
-@inlined
-def _between(slope: float, offset: float, half: float, low: float, high: float) -> tuple[float, float]:
-    """Narrow [low, high] to the x with |slope x + offset| <= half; where none is, low >= high."""
-    if abs(slope) < 1e-9:
-        if abs(offset) <= half:
-            return low, high
-        return 0.0, 0.0
-    a, b = (-half - offset) / slope, (half - offset) / slope
-    return max(low, min(a, b)), min(high, max(a, b))
-
-
-@inlined
-def _box_run(c: float, s: float, dy: float, a: float, b: float, x: float, width: int) -> tuple[int, int]:
-    """Return the pixels [first, end) of a row that lie in a turned box of half extents a and b."""
-    low, high = _between(c, -s * dy, a, -1e9, 1e9)
-    low, high = _between(s, c * dy, b, low, high)
-    if low >= high or a <= 0.0 or b <= 0.0:
-        return _pixel(0.0, 0), _pixel(0.0, 0)
-    return _pixel(x + low, width), _pixel(x + high, width)
-
-
-@inlined
-def _box_edge(
-    pixels: Pixels, row: int, first: int, end: int, x: float, dy: float, c: float, s: float,
-    a: float, b: float, band: float, inside: int, edge: int,
-) -> None:  # fmt: skip
-    """Paint a run of a box's row that holds rim, or half-covered pixels."""
-    for column in range(first, end):
-        dx = column + 0.5 - x
-        depth_u, depth_v = a - abs(c * dx - s * dy), b - abs(s * dx + c * dy)
-        depth = min(depth_u, depth_v)
-        colour = _rimmed(depth, band, inside, edge)
-        if depth < 0.5:
-            cover = unit(depth_u + 0.5) * unit(depth_v + 0.5)
-            colour = mixed(int(pixels[row, column]), colour, cover)
-        pixels[row, column] = colour
-
-
-@inlined
-def _shadow_of_box(
-    pixels: Pixels, x: float, y: float, a: float, b: float, c: float, s: float, opacity: float
-) -> None:
-    """Paint what is seen of a box's shadow around it."""
-    height, width = pixels.shape
-    middle, out = y + F.SHADOW_DOWN, F.SHADOW_SOFT
-    extent = abs(s) * (a + out) + abs(c) * (b + out)
-    for row in range(_pixel(middle - extent, height), _pixel(middle + extent, height)):
-        dy = row + 0.5 - middle
-        left, right = _box_run(c, s, dy, a + out, b + out, x, width)
-        own_left, own_right = _box_run(c, s, row + 0.5 - y, a - 0.5, b - 0.5, x, width)
-        if own_left >= own_right:
-            own_left = own_right = right
-        for part in range(2):
-            first, end = (left, min(own_left, right)) if part == 0 else (max(own_right, left), right)
-            for column in range(first, end):
-                dx = column + 0.5 - x
-                beyond_u, beyond_v = abs(c * dx - s * dy) - a, abs(s * dx + c * dy) - b
-                u, v = max(beyond_u, 0.0), max(beyond_v, 0.0)
-                away = math.sqrt(u * u + v * v) + min(max(beyond_u, beyond_v), 0.0)
-                share = opacity * unit(0.5 - 0.5 * away / out)
-                pixels[row, column] = mixed(int(pixels[row, column]), F.BLACK, share)
-
-
-@kernel
-def paint_boxes(
-    pixels: Pixels, centre: Vectors, half: Vectors, angle: Numbers,
-    fill: Colours, rim: Colours, finish: Rows, rim_width: float, shadow: float,
-) -> None:  # fmt: skip
-    """Paint boxes with a rim, lit by their finish.
-
-    Lengths are in px, ``half`` holds half the extents, ``angle`` is counter-clockwise on the screen [rad];
-    ``shadow`` is the opacity of the shadows, which lie below all of the boxes.
-    """
-    height, width = pixels.shape
-    for i in range(len(angle) if shadow > 0.0 else 0):
-        a, b = half[i, 0], half[i, 1]
-        if min(a, b) >= F.SHADOW_FROM:
-            c, s = math.cos(angle[i]), math.sin(angle[i])
-            _shadow_of_box(pixels, centre[i, 0], centre[i, 1], a, b, c, s, shadow)
-    for i in range(len(angle)):
-        x, y, a, b, kind = centre[i, 0], centre[i, 1], half[i, 0], half[i, 1], finish[i]
-        inside, edge = int(fill[i]), int(rim[i])
-        bright, dim = lit(inside, kind), shaded(inside, kind)
-        c, s = math.cos(angle[i]), math.sin(angle[i])
-        band = min(rim_width, 0.35 * min(a, b))
-        core = band + 0.5
-        extent = abs(s) * a + abs(c) * b + 0.75
-        depth = max(F.DEEP, 2.0 * extent) if kind == F.GROUND else 2.0 * extent
-        for row in range(_pixel(y - extent, height), _pixel(y + extent, height)):
-            dy = row + 0.5 - y
-            left, right = _box_run(c, s, dy, a + 0.5, b + 0.5, x, width)
-            core_left, core_right = _box_run(c, s, dy, a - core, b - core, x, width)
-            if core_left >= core_right:
-                core_left = core_right = right
-            level = mixed(bright, dim, unit((dy + extent) / depth))
-            _box_edge(pixels, row, left, core_left, x, dy, c, s, a, b, band, level, edge)
-            if kind == F.GROUND:  # by itself: ground fills half of many pictures
+            elif kind == F.GROUND:  # by itself: ground fills half of many pictures
                 ahead, place = (c + s) * F.DIAGONAL, (c - s) * F.DIAGONAL * dy
-                for column in range(core_left, core_right):
+                for column in range(begin, last):
                     diagonal = place + ahead * (column + 0.5 - x)
                     pixels[row, column] = hatched(diagonal, level, edge)
             elif kind > F.GROUND:
-                for column in range(core_left, core_right):
-                    dx = column + 0.5 - x
+                for column in range(begin, last):
+                    dx, under = column + 0.5 - x, int(pixels[row, column])
                     u, v = c * dx - s * dy, s * dx + c * dy
-                    pixels[row, column] = textured(kind, u, v, level, edge, int(pixels[row, column]))
+                    pixels[row, column] = textured(kind, u, v, level, edge, under)
             else:
-                for column in range(core_left, core_right):
+                for column in range(begin, last):
                     pixels[row, column] = level
-            _box_edge(pixels, row, core_right, right, x, dy, c, s, a, b, band, level, edge)
-
-
-@inlined
-def _beyond_core(px: float, py: float, corners: Vectors, i: int, count: int) -> float:
-    """Return how far a place is from a core [px], negative within; y points down."""
-    nearest, within = math.inf, count > 2
-    for k in range(count):
-        x, y = corners[i, 2 * k], corners[i, 2 * k + 1]
-        end = 2 * (k + 1) if k + 1 < count else 0
-        along_x, along_y = corners[i, end] - x, corners[i, end + 1] - y
-        dx, dy = px - x, py - y
-        square = along_x * along_x + along_y * along_y
-        share = unit((dx * along_x + dy * along_y) / square) if square > 0.0 else 0.0
-        away_x, away_y = dx - share * along_x, dy - share * along_y
-        nearest = min(nearest, away_x * away_x + away_y * away_y)
-        within = within and along_x * dy - along_y * dx <= 0.0
-    return -math.sqrt(nearest) if within else math.sqrt(nearest)
-
-
-@kernel
-def paint_rounded(
-    pixels: Pixels, corners: Vectors, vertices: Rows, radius: Numbers,
-    fill: Colours, rim: Colours, finish: Rows, rim_width: float, shadow: float,
-) -> None:  # fmt: skip
-    """Paint rounded polygons with a rim, lit by their finish.
-
-    ``corners`` (n, 16) holds x and y of each vertex in turn [px], counter-clockwise as it is seen; ``shadow``
-    is the opacity of their shadows.
-    """
-    height, width = pixels.shape
-    for i in range(len(radius)):
-        count, inside, edge, kind = vertices[i], int(fill[i]), int(rim[i]), finish[i]
-        bright, dim = lit(inside, kind), shaded(inside, kind)
-        left, right, top, bottom, x, y = math.inf, -math.inf, math.inf, -math.inf, 0.0, 0.0
-        for k in range(count):
-            at_x, at_y = corners[i, 2 * k], corners[i, 2 * k + 1]
-            left, right, top, bottom = min(left, at_x), max(right, at_x), min(top, at_y), max(bottom, at_y)
-            x, y = x + at_x / count, y + at_y / count
-        extent = bottom - top + 2.0 * radius[i]
-        casts = shadow > 0.0 and min(extent, right - left + 2.0 * radius[i]) >= 2.0 * F.SHADOW_FROM
-        down, soft = (F.SHADOW_DOWN, F.SHADOW_SOFT) if casts else (0.0, 0.5)
-        reach = radius[i] + soft
-        depth_of_light = max(F.DEEP, extent) if kind == F.GROUND else extent
-        along_x, along_y = corners[i, 0] - x, corners[i, 1] - y
-        length = max(math.sqrt(along_x * along_x + along_y * along_y), 1e-9)
-        c, s = along_x / length, along_y / length
-        for row in range(_pixel(top - reach, height), _pixel(bottom + down + reach, height)):
-            py = row + 0.5
-            level = mixed(bright, dim, unit((py - top + radius[i]) / depth_of_light))
-            for column in range(_pixel(left - reach, width), _pixel(right + reach, width)):
-                px, under = column + 0.5, int(pixels[row, column])
-                depth = radius[i] - _beyond_core(px, py, corners, i, count)
-                if casts and depth < 0.5:
-                    away = _beyond_core(px, py - down, corners, i, count) - radius[i]
-                    under = mixed(under, F.BLACK, shadow * unit(0.5 - 0.5 * away / soft))
-                if depth > -0.5:
-                    colour = level
-                    if kind >= F.GROUND:
-                        dx, dy = px - x, py - y
-                        colour = textured(kind, c * dx + s * dy, c * dy - s * dx, level, edge, under)
-                    under = mixed(under, _rimmed(depth, rim_width, colour, edge), unit(depth + 0.5))
-                if depth > -0.5 or casts:
-                    pixels[row, column] = under
+        if is_round and r >= F.WEDGE_FROM and kind >= F.LIT and kind != F.GROUND:
+            _wedge(pixels, x, y, r, angle[i])
 
 
 @kernel
 def paint_lines(
-    pixels: Pixels, start: Vectors, end: Vectors, line_width: float, colour: int, opacity: Numbers
+    pixels: Pixels, start: Vectors, end: Vectors, line_width: Numbers, opacity: Numbers, colour: Colours
 ) -> None:
-    """Paint straight lines with round ends; ends and width in px, opacity of each 0..1."""
-    for i in range(len(start)):
-        _stroke(pixels, start[i, 0], start[i, 1], end[i, 0], end[i, 1], 0.5 * line_width, colour, opacity[i])
-
-
-@kernel
-def paint_strokes(pixels: Pixels, start: Vectors, end: Vectors, line_width: Numbers, colour: Colours) -> None:
-    """Paint straight lines with round ends, each of its own width [px] and colour, in their order."""
+    """Paint straight lines with round ends in their order; ends and widths in px, opacities 0..1."""
     for i in range(len(start)):
         half, paint = 0.5 * line_width[i], int(colour[i])
-        _stroke(pixels, start[i, 0], start[i, 1], end[i, 0], end[i, 1], half, paint, 1.0)
+        _stroke(pixels, start[i, 0], start[i, 1], end[i, 0], end[i, 1], half, paint, opacity[i])

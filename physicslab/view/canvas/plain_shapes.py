@@ -26,46 +26,25 @@ type _Place = tuple[float, float]
 type _Colour = tuple[int, int, int]
 
 
-def draw_discs(
-    surface: pygame.Surface, centre: Points, radius: Numbers, angle: Numbers, look: Look, rim: float
-) -> None:
-    """Draw discs, each with a rim, and a line that shows its angle [rad] where it is not flat."""
+def draw_rounded(surface: pygame.Surface, shapes: Rounded, angle: Numbers, look: Look, rim: float) -> None:
+    """Draw rounded polygons, each with a rim; a line shows the angle [rad] of a disc that is not flat."""
     for i, (fill, edge) in enumerate(_colours(look)):
-        x, y, r = float(centre[i, 0]), float(centre[i, 1]), float(radius[i])
-        width = max(1, round(min(rim, 0.35 * r)))
-        if r >= _LARGE:
-            turns = np.linspace(0.0, 2.0 * math.pi, _CORNERS, endpoint=False)
-            _polygon(surface, x + r * np.cos(turns), y + r * np.sin(turns), fill, edge, width)
-        elif _is_seen(surface, x, y, r):
+        core, r = shapes.corners[i, : shapes.vertices[i]], float(shapes.radius[i])
+        width = max(1, round(min(rim, 0.35 * r) if len(core) == 1 else rim))
+        if len(core) > 1 or r >= _LARGE:
+            outline = rim_of(core[::-1], r, 48 if len(core) > 1 else _CORNERS)
+            _polygon(surface, outline[:, 0], outline[:, 1], fill, edge, width)
+            continue
+        x, y = core[0].tolist()
+        if _is_seen(surface, x, y, r):
             pygame.draw.circle(surface, fill, (x, y), max(r, 1.0))
             pygame.draw.circle(surface, edge, (x, y), max(r, 1.0), width)
         if r >= _SPOKE_FROM and look.finish[i] >= Finish.LIT and look.finish[i] != Finish.GROUND:
-            end = 0.8 * r
-            tip = x + end * math.cos(angle[i]), y - end * math.sin(angle[i])
+            tip = x + 0.8 * r * math.cos(angle[i]), y - 0.8 * r * math.sin(angle[i])
             _stroke(surface, (x, y), tip, edge, width)
 
 
-def draw_boxes(
-    surface: pygame.Surface, centre: Points, half: Points, angle: Numbers, look: Look, rim: float
-) -> None:
-    """Draw boxes of half the given extents, each with a rim."""
-    for i, (fill, edge) in enumerate(_colours(look)):
-        x, y, a, b = float(centre[i, 0]), float(centre[i, 1]), float(half[i, 0]), float(half[i, 1])
-        c, s = math.cos(angle[i]), math.sin(angle[i])
-        width = max(1, round(min(rim, 0.35 * min(a, b))))
-        along, across = np.array((a, a, -a, -a)), np.array((b, -b, -b, b))
-        _polygon(surface, x + c * along - s * across, y - s * along - c * across, fill, edge, width)
-
-
-def draw_rounded(surface: pygame.Surface, shapes: Rounded, look: Look, rim: float) -> None:
-    """Draw rounded polygons, each with a rim."""
-    for i, (fill, edge) in enumerate(_colours(look)):
-        core = shapes.corners[i, : shapes.vertices[i]]
-        outline = rim_of(core[::-1], float(shapes.radius[i]))
-        _polygon(surface, outline[:, 0], outline[:, 1], fill, edge, max(1, round(rim)))
-
-
-def draw_strokes(
+def draw_lines(
     surface: pygame.Surface, start: Points, end: Points, colour: NDArray[np.uint8], width: Numbers,
     opacity: Numbers,
 ) -> None:  # fmt: skip

@@ -10,8 +10,11 @@ from numpy.typing import NDArray
 from physicslab.languages.language import language
 from physicslab.theme import RIM, Colour
 from physicslab.view.canvas.canvas import Align, Look, Numbers, Painter, Points, Rect, Rounded, TextStyle
-from physicslab.view.canvas.plain_shapes import draw_boxes, draw_discs, draw_rounded, draw_strokes
+from physicslab.view.canvas.plain_shapes import draw_lines, draw_rounded
 from physicslab.view.canvas.surface_cache import GLOW_LEVELS, SurfaceCache
+
+_BOX = np.array(((1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), *((1.0, -1.0),) * 5))
+"""The corners of a box in half extents, the last one repeated as :class:`Rounded` has it."""
 
 
 class PygameCanvas:
@@ -32,8 +35,7 @@ class PygameCanvas:
         self.surface, self.language = surface, language()
         red, green, blue, _ = surface.get_shifts()
         self._shifts = np.array((red, green, blue), np.uint32)
-        self._surfaces = SurfaceCache()
-        self._colours: dict[Colour, int] = {}
+        self._surfaces, self._sides = SurfaceCache(), np.empty((len(_BOX), 5))
         self._kept: pygame.Surface | None = None
         self._kept_key: Hashable = None
 
@@ -82,58 +84,54 @@ class PygameCanvas:
 
     def discs(self, centre: Points, radius: Numbers, angle: Numbers, look: Look) -> None:
         """Draw discs, each with a rim, and a wedge that shows its angle where it is not flat."""
-        self._bodies("paint_discs", draw_discs, (centre, radius, angle), look)
+        corners = np.repeat(centre[:, None], len(_BOX), axis=1)
+        self._bodies(Rounded(corners, np.ones(len(centre), np.int64), radius), angle, look)
 
     def boxes(self, centre: Points, extent: Points, angle: Numbers, look: Look) -> None:
         """Draw boxes of the given widths and heights, each with a rim."""
-        self._bodies("paint_boxes", draw_boxes, (centre, 0.5 * extent, angle), look)
-
-    def _bodies(
-        self, name: str, draw: Callable[..., None], placed: tuple[NDArray[np.float64], ...], look: Look
-    ) -> None:
-        """Draw bodies by a loop of the rasteriser, or plainly while it is to be interpreted."""
-        paint = _painter(name)
-        if paint is None:
-            draw(self.surface, *placed, look, RIM)
-            return
-        fill, rim = self._packed(look.fill), self._packed(look.rim)
-        paint(self._pixels(), *map(_plain, placed), fill, rim, look.finish, RIM, look.shadow)
+        c, s = np.cos(angle)[:, None], np.sin(angle)[:, None]
+        a, b = (0.5 * extent[:, axis, None] * _BOX[:, axis] for axis in (0, 1))
+        corners = centre[:, None] + np.stack((c * a - s * b, -s * a - c * b), axis=2)
+        self._bodies(Rounded(corners, np.full(len(centre), 4), np.zeros(len(centre))), angle, look)
 
     def rounded(self, shapes: Rounded, look: Look) -> None:
-        """Draw rounded polygons, each with a rim."""
-        paint_rounded = _painter("paint_rounded")
-        if paint_rounded is None:
-            draw_rounded(self.surface, shapes, look, RIM)
+        """Draw rounded polygons, each with a rim; they have turned as far as their first vertex has."""
+        own = np.arange(len(_BOX)) < shapes.vertices[:, None]
+        middle = (shapes.corners * own[:, :, None]).sum(axis=1) / shapes.vertices[:, None]
+        way = shapes.corners[:, 0] - middle
+        self._bodies(shapes, np.arctan2(-way[:, 1], way[:, 0]), look)
+
+    def _bodies(self, shapes: Rounded, angle: Numbers, look: Look) -> None:
+        """Draw shapes by the loop of the rasteriser, or plainly while it is to be interpreted."""
+        paint = _painter("paint_rounded")
+        if paint is None:
+            draw_rounded(self.surface, shapes, angle, look, RIM)
             return
-        fill, rim = self._packed(look.fill), self._packed(look.rim)
-        corners, radius = _plain(shapes.corners.reshape(len(fill), -1)), _plain(shapes.radius)
-        paint_rounded(
-            self._pixels(), corners, shapes.vertices, radius, fill, rim, look.finish, RIM, look.shadow
-        )
+        placed = map(_plain, (shapes.radius, angle))
+        colours = self._packed(look.fill), self._packed(look.rim), look.finish
+        corners = _plain(shapes.corners.reshape(len(angle), -1))
+        paint(self._pixels(), corners, shapes.vertices, *placed, *colours, RIM, look.shadow, self._sides)
 
     def lines(
         self, start: Points, end: Points, colour: Colour, width: float = 1.0, opacity: float | Numbers = 1.0
     ) -> None:
         """Draw straight lines of one kind, with round ends; each may have an opacity of its own."""
-        paint_lines = _painter("paint_lines")
-        shares = np.full(len(start), opacity) if isinstance(opacity, float) else _plain(opacity)
-        if paint_lines is None:
-            alike = np.tile(np.array(colour, np.uint8), (len(start), 1))
-            draw_strokes(self.surface, start, end, alike, np.full(len(start), width), shares)
-            return
-        packed = self._colours.get(colour)
-        if packed is None:
-            packed = self._colours[colour] = int(self._packed(np.array([colour], np.uint8))[0])
-        paint_lines(self._pixels(), _plain(start), _plain(end), width, packed, shares)
+        count = len(start)
+        alike = np.tile(np.array(colour, np.uint8), (count, 1)), np.full(count, width)
+        self._lines(start, end, *alike, np.full(count, opacity) if isinstance(opacity, float) else opacity)
 
     def strokes(self, start: Points, end: Points, colour: NDArray[np.uint8], width: Numbers) -> None:
         """Draw straight lines with round ends, each of its own colour (n, 3) and width."""
-        paint_strokes = _painter("paint_strokes")
-        if paint_strokes is None:
-            draw_strokes(self.surface, start, end, colour, width, np.ones(len(start)))
+        self._lines(start, end, colour, width, np.ones(len(start)))
+
+    def _lines(
+        self, start: Points, end: Points, colour: NDArray[np.uint8], width: Numbers, opacity: Numbers
+    ) -> None:
+        paint = _painter("paint_lines")
+        if paint is None:
+            draw_lines(self.surface, start, end, colour, width, opacity)
             return
-        paint = self._packed(colour)
-        paint_strokes(self._pixels(), _plain(start), _plain(end), _plain(width), paint)
+        paint(self._pixels(), *map(_plain, (start, end, width, opacity)), self._packed(colour))
 
     def panel(self, rect: Rect, colour: Colour, outline: Colour, opacity: float = 1.0) -> None:
         """Draw a rectangle with rounded corners and a thin outline."""
