@@ -15,7 +15,7 @@ from physicslab import cli
 from physicslab.components import Spring, Transform, Velocity
 from physicslab.ecs.config import PhysicsConfig
 from physicslab.ecs.vector import Vector2
-from physicslab.lab.bench import like_quality
+from physicslab.lab.bench import whole_runs
 from physicslab.lab.bench.catalogue import SCENES, gas_scene, pile_scene
 from physicslab.lab.bench.engine import Engine
 from physicslab.lab.bench.measure import Judge, measure_scene
@@ -235,14 +235,14 @@ def _judged(overlap: float | None, failure: str = "") -> EngineResult:
     ],
 )  # fmt: skip
 def test_a_peer_is_alike_if_no_figure_is_worse(other: EngineResult, ours: float, alike: bool) -> None:
-    assert like_quality._is_alike(other, _judged(ours)) is alike
+    assert whole_runs._is_alike(other, _judged(ours)) is alike
 
 
 @pytest.mark.peers
 def test_a_peer_that_overlaps_deeper_is_run_in_shorter_steps_until_it_does_not() -> None:
     found = result_of(measure_whole(*random_scene(62, 10), (PymunkMirror,)))
     ours, other = found.result.ours, found.result.engines["pymunk"]
-    assert not like_quality._is_alike(other, ours) and other.times_ours is not None
+    assert not whole_runs._is_alike(other, ours) and other.times_ours is not None
     assert other.alike is not None and other.alike.is_reached and other.alike.finer > 1
     assert other.alike.times_ours > other.times_ours
     report = WholeReport("62:10", ["pymunk"], [found])

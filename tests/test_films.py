@@ -23,8 +23,7 @@ from numpy.typing import NDArray
 from physicslab import cli, load_scene
 from physicslab.components import Note
 from physicslab.export.film import Film, check_encoder
-from physicslab.export.gif import GifWriter
-from physicslab.export.palette import find_palette
+from physicslab.export.gif import GifWriter, find_palette
 from physicslab.kernels.lzw import CODES, pack_lzw
 from physicslab.view.overlay.moving import MovingPicture
 

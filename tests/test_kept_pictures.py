@@ -6,7 +6,7 @@ import numpy as np
 import pygame
 import pytest
 
-from physicslab.systems.frame.refresh_timer import RefreshTimer
+from physicslab.systems.frame.hud import RefreshTimer
 from physicslab.view.canvas.surface_cache import rounded
 
 

@@ -35,6 +35,7 @@ from physicslab.prefabs import box, circle
 from physicslab.stepping import split_forces, spring_flow
 from physicslab.stepping.soft import Soft
 from physicslab.stepping.split_forces import SplitForces, SplitPart
+from physicslab.stepping.spring_groups import spring_groups
 from physicslab.world import World
 
 open_space = partial(worlds.open_space, contacts="soft", collisions="step")
@@ -479,6 +480,41 @@ def test_a_fast_spring_changes_no_bit_of_what_slow_ones_do(stiffness: float, dam
         without.energy["numerical"], abs=1e-6 + 1e-12 * stored
     )
     assert abs(account.momentum["numerical"]) < 1e-12
+
+
+@pytest.mark.parametrize(("light", "arm"), [(1.0, 0.0), (0.01, 0.0), (0.01, 0.08)])
+def test_rates_of_a_net_are_those_of_the_fastest_shape_that_it_may_have(light: float, arm: float) -> None:
+    """Springs of random directions, and springs that act alike on both ends: the largest singular values."""
+    world, random = far_floor(open_space()), np.random.default_rng(3)
+    masses = [light if i == 6 else 1.0 + 0.1 * i for i in range(16)]
+    net = [circle(world, (i % 4, i // 4), radius=0.1, mass=mass) for i, mass in enumerate(masses)]
+    ends = [(i, i + 1) for i in range(16) if i % 4 < 3] + [(i, i + 4) for i in range(12)]
+    strong = random.uniform(10.0, 100.0, len(ends))
+    for (a, b), k in zip(ends, strong.tolist(), strict=True):
+        world.spawn(
+            Spring(net[a], net[b], (arm, 0.0), (0.0, arm), rest_length=1.0, stiffness=k, damping=1e-3 * k)
+        )
+    world.synchronise()
+    (group,) = spring_groups(world, world.schedule.forces, np.ones(len(world.bodies.inverse_mass), np.bool_))
+    moves = world.bodies.inverse_mass > 0.0
+    give = [world.bodies.inverse_mass[moves], world.bodies.inverse_inertia[moves]]
+
+    def fastest(any_way: bool) -> float:
+        """Return the rate where springs have random directions, or pull alike at both ends."""
+        stretch = np.zeros((len(ends), 3, 16))
+        for k, (row, pair) in enumerate(zip(stretch, ends, strict=True)):
+            turn, *turns = random.uniform(0.0, 2.0 * math.pi, 3)
+            for end, at, sign in zip(pair, turns, (-1.0, 1.0), strict=True):
+                row[:, end] = sign * math.cos(turn), sign * math.sin(turn), sign * arm * math.sin(turn - at)
+                if not any_way:
+                    row[:, end] = 1.0, 0.0, arm
+            row *= math.sqrt(strong[k])
+        scaled = stretch * np.sqrt(np.stack((give[0], *give)))
+        return float(np.linalg.norm(scaled.reshape(len(ends), -1), 2))
+
+    assert max(fastest(True) for _ in range(20)) <= group.rate
+    assert fastest(False) <= group.rate < 1.03 * fastest(False)
+    assert group.decay == pytest.approx(1e-3 * group.rate**2, rel=1e-9)
 
 
 @pytest.mark.parametrize("damping", [0.0, 2e3])

@@ -6,6 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from physicslab.kernels.directions import face
 from physicslab.kernels.float64x8 import (
     choose,
     greater,
@@ -59,6 +60,11 @@ def moved(vectors: Numbers, numbers: Numbers, rows: NDArray[np.int64], first: in
     put_numbers(numbers, rows, first, 2.0 * n)
 
 
+@numba.njit(error_model="numpy")
+def faced(angle: Numbers, facing: Numbers) -> None:
+    face(angle, facing)
+
+
 finite = st.floats(-1e100, 1e100).filter(lambda x: x == 0.0 or abs(x) > 1e-100)
 eight = st.lists(finite, min_size=WIDE, max_size=WIDE).map(np.array)
 
@@ -104,3 +110,21 @@ def test_rows_are_gathered_and_given_back(order: list[int], first: int) -> None:
     doubled[rows] *= 2.0
     moved(vectors, numbers, np.array(order), first)
     assert np.array_equal(vectors, expected) and np.array_equal(numbers, doubled)
+
+
+@settings(max_examples=200)
+@given(st.lists(st.floats(-1e6, 1e6), min_size=2 * WIDE, max_size=2 * WIDE).map(np.array))
+def test_directions_are_the_cosines_and_sines_of_angles(angle: Numbers) -> None:
+    facing = np.zeros((2 * WIDE, 2))
+    faced(angle, facing)
+    np.testing.assert_allclose(facing, np.stack((np.cos(angle), np.sin(angle)), 1), rtol=0.0, atol=2.3e-16)
+
+
+def test_directions_at_and_between_quarters_beyond_all_turns_and_of_what_is_no_number() -> None:
+    angle, facing = np.linspace(-8.0 * np.pi, 7.75 * np.pi, 64), np.zeros((64, 2))
+    faced(angle, facing)
+    np.testing.assert_allclose(facing, np.stack((np.cos(angle), np.sin(angle)), 1), rtol=0.0, atol=2.3e-16)
+    huge = np.array((1e12, -1e15, 1e17, -1e300, np.inf, np.nan, 0.0, -0.0))
+    faced(huge, facing[:WIDE])
+    assert (np.abs(facing[:4]) <= 1.0).all() and np.isnan(facing[4:6]).all()
+    assert facing[6:8].tolist() == [[1.0, 0.0], [1.0, 0.0]]

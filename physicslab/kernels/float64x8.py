@@ -308,6 +308,23 @@ def _put_vectors_type(context: Any, vectors: Any, rows: Any, first: Any, x: Any,
     return types.void(vectors, rows, first, x, y), generate
 
 
+def _put_pairs_type(context: Any, vectors: Any, first: Any, x: Any, y: Any) -> Any:
+    """Give eight rows of an array (n, 2), one after the other, their coordinates."""
+
+    def generate(context: Any, build: Any, signature: Any, arguments: Any) -> Any:
+        data = _data(context, build, signature.args[0], arguments[0])
+        x, y = arguments[2], arguments[3]
+        for half in range(2):
+            slots = range(half * WIDE // 2, (half + 1) * WIDE // 2)
+            mixed = _shuffled(build, x, y, [place for slot in slots for place in (slot, WIDE + slot)])
+            row = build.add(arguments[1], ir.IntType(64)(half * WIDE // 2))
+            place = build.gep(data, [build.mul(row, ir.IntType(64)(2))])
+            build.store(mixed, build.bitcast(place, _DOUBLES.as_pointer()), align=8)
+        return context.get_dummy_value()
+
+    return types.void(vectors, first, x, y), generate
+
+
 type _Some = Wide | float
 _inline: Any = intrinsic
 lesser: Any = _inline(_lesser_type)
@@ -324,3 +341,4 @@ take_numbers: Callable[[Numbers, Rows, int], Wide] = _inline(_take_numbers_type)
 put_numbers: Callable[[Numbers, Rows, int, Wide], None] = _inline(_put_numbers_type)
 take_vectors: Callable[[Vectors, Rows, int], tuple[Wide, Wide]] = _inline(_take_vectors_type)
 put_vectors: Callable[[Vectors, Rows, int, Wide, Wide], None] = _inline(_put_vectors_type)
+put_pairs: Callable[[Vectors, int, Wide, Wide], None] = _inline(_put_pairs_type)

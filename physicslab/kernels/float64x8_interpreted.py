@@ -90,3 +90,8 @@ def _take_vectors(vectors: _Lanes, rows: NDArray[np.int64], first: int) -> tuple
 def _put_vectors(vectors: _Lanes, rows: NDArray[np.int64], first: int, x: _Lanes, y: _Lanes) -> None:
     eight = rows[first : first + WIDE]
     vectors[eight, 0], vectors[eight, 1] = x, y
+
+
+@equivalent_for(float64x8.put_pairs)
+def _put_pairs(vectors: _Lanes, first: int, x: _Lanes, y: _Lanes) -> None:
+    vectors[first : first + WIDE, 0], vectors[first : first + WIDE, 1] = x, y

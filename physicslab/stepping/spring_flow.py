@@ -126,7 +126,8 @@ class SpringFlow:
         by_drag[: len(slowed)] = slowed
         full = turns or damped > 0 or len(slowed) > 0
         if full:
-            parts += [turned, np.zeros(len(moving) + 4 * p), np.ones(p), np.zeros(5 * p), spring["damping"]]
+            parts += [turned, np.zeros(-(-len(moving) // WIDE) * WIDE), np.tile((1.0, 0.0), p + WIDE)]
+            parts += [np.zeros(5 * p), spring["damping"]]
             parts += [np.zeros((3 + MOST_TERMS) * len(order)), *_arms(state, rows, order, slots, len(moving))]
             parts += [np.zeros(4 * len(order))]
         gain = np.zeros((2, len(by_drag)))

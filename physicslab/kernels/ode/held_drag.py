@@ -5,7 +5,7 @@ from typing import NamedTuple
 from physicslab.kernels import Numbers, Rows, Vectors, inlined, inlined_by_numba
 from physicslab.kernels.arguments import Springs
 from physicslab.kernels.float64x8 import everywhere, put, put_vectors, sum_of, take, take_vectors
-from physicslab.kernels.ode.spring_flow import BY_DAMPERS, MOST_TERMS, Places
+from physicslab.kernels.ode.spring_flow import BY_DAMPERS, DISSIPATED, MOST_TERMS, UNIFORM, Places
 from physicslab.kernels.wide_layout import WIDE
 
 
@@ -13,7 +13,8 @@ class Slowed(NamedTuple):
     """Which places of :class:`Places` drag slows (d,), by how much [kg/s], and their inverse masses [1/kg].
 
     They are a multiple of eight: no drag acts on the last, at the place of no spring. Then the velocities at
-    the start of a kick and their derivatives of each order, x and y (MOST_TERMS * d,).
+    the start of a kick and their derivatives of each order, x and y (MOST_TERMS * d,), which only dampers
+    need, and the acceleration of gravity (2,) [m/s^2].
     """
 
     places: Rows
@@ -21,6 +22,7 @@ class Slowed(NamedTuple):
     gain: Numbers
     rates_x: Numbers
     rates_y: Numbers
+    gravity: Numbers
 
 
 @inlined_by_numba
@@ -36,6 +38,7 @@ def slowed_in(springs: Springs) -> Slowed:
         numbers[rates - d : rates],
         numbers[rates : rates + MOST_TERMS * d],
         numbers[rates + MOST_TERMS * d : last],
+        numbers[UNIFORM : UNIFORM + 2],
     )
 
 
@@ -53,20 +56,35 @@ def slow(places: Places, slowed: Slowed, velocity: Vectors, term: int) -> None:
 
 
 @inlined
-def slow_alone(places: Places, slowed: Slowed, rate: Vectors, span: float, terms: int) -> None:
-    """Change velocities by all that follows their first derivative in a kick, where drag alone resists."""
-    d = len(slowed.places)
-    for at in range(0, d, WIDE):
-        x, y = take_vectors(rate, slowed.places, at)
-        speed_x, speed_y = take_vectors(places.speed, slowed.places, at)
-        drag, gain, share = take(slowed.drag, at), take(slowed.gain, at), span
-        for term in range(1, terms):
-            share *= span / (term + 1)
-            put(slowed.rates_x, term * d + at, x)
-            put(slowed.rates_y, term * d + at, y)
-            x, y = -(drag * x) * gain, -(drag * y) * gain
-            speed_x, speed_y = speed_x + share * x, speed_y + share * y
-        put_vectors(places.speed, slowed.places, at, speed_x, speed_y)
+def slow_alone(places: Places, slowed: Slowed, span: float, terms: int, given: Numbers) -> None:
+    """Take from velocities what drag takes in a kick where no damper acts, and book it.
+
+    Velocities go by v + a p, p = (1 - e^(-rate t)) / rate, of which the integrals of p and of its square are
+    needed, as series.
+    """
+    taken, px, py, turned = everywhere(0.0), everywhere(0.0), everywhere(0.0), everywhere(0.0)
+    for at in range(0, len(slowed.places), WIDE):
+        vx, vy = take_vectors(places.speed, slowed.places, at)
+        ax, ay = take_vectors(places.pull, slowed.places, at)
+        drag, gain = take(slowed.drag, at), take(slowed.gain, at)
+        rate = drag * gain
+        ax, ay = ax * gain + slowed.gravity[0] - rate * vx, ay * gain + slowed.gravity[1] - rate * vy
+        share, power = everywhere(0.5 * span * span), 4.0  # (-rate)^(n - 2) span^n / n!, and 2^n
+        once, twice = everywhere(0.0), everywhere(0.0)
+        for n in range(2, terms + 2):
+            once, twice = once + share, twice + share * ((power - 2.0) * span / (n + 1))
+            share, power = share * rate * (-span / (n + 1)), 2.0 * power
+        to_x, to_y = span * vx + ax * once, span * vy + ay * once
+        put_vectors(places.speed, slowed.places, at, vx - rate * to_x, vy - rate * to_y)
+        squares = span * (vx * vx + vy * vy) + 2.0 * once * (vx * ax + vy * ay)
+        taken = taken + drag * (squares + twice * (ax * ax + ay * ay))
+        x, y = take_vectors(places.place, slowed.places, at)
+        to_x, to_y = drag * to_x, drag * to_y
+        px, py, turned = px + to_x, py + to_y, turned + (x * to_y - y * to_x)
+    given[DISSIPATED] += sum_of(taken)
+    given[BY_DAMPERS] -= sum_of(px)
+    given[BY_DAMPERS + 1] -= sum_of(py)
+    given[BY_DAMPERS + 2] -= sum_of(turned)
 
 
 @inlined

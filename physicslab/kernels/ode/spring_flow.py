@@ -161,7 +161,8 @@ def _kick_and_drift(places: Places, kick: float, drift: float) -> None:
 
 
 @inlined
-def _clear_pull(places: Places) -> None:
+def clear_pull(places: Places) -> None:
+    """Set the pull of all springs to zero."""
     pull = places.pull.reshape(places.pull.size)
     for i in range(len(pull)):
         pull[i] = 0.0
@@ -177,14 +178,17 @@ def _evaluate(places: Places, links: Links, followed: float) -> bool:
 
 
 @inlined
-def _book(places: Places, ends: Rows, kick: float, given: Numbers) -> None:
-    """Book what springs give in a kick by ends that they do not move: what acts on these, reversed."""
+def book_ends(places: Places, ends: Rows, kick: float, to: int, given: Numbers) -> None:
+    """Book what springs give in a kick by ends that they do not move: what acts on these, reversed.
+
+    ``to`` is where in what is given that belongs.
+    """
     for k in range(len(ends)):
         i = ends[k]
         x, y = kick * places.pull[i, 0], kick * places.pull[i, 1]
-        given[BY_SPRINGS] -= x
-        given[BY_SPRINGS + 1] -= y
-        given[BY_SPRINGS + 2] -= places.place[i, 0] * y - places.place[i, 1] * x
+        given[to] -= x
+        given[to + 1] -= y
+        given[to + 2] -= places.place[i, 0] * y - places.place[i, 1] * x
         given[BY_HAND] -= x * places.speed[i, 0] + y * places.speed[i, 1]
 
 
@@ -228,21 +232,21 @@ def _advance(
     if fast != 0:
         return TURNS_FAST
     if places.known[0] == 0.0:
-        _clear_pull(places)
+        clear_pull(places)
         evaluations = 1
         if not _evaluate(places, links, followed):
             return TURNS_FAST
     torque, rate = torque_of_gravity(places)
     for _ in range(steps):
         for stage in range(len(drifts)):
-            _book(places, ends, kicks[stage] * h, given)
+            book_ends(places, ends, kicks[stage] * h, BY_SPRINGS, given)
             _kick_and_drift(places, kicks[stage] * h, drifts[stage] * h)
             evaluations += 1
             if not _evaluate(places, links, followed):
                 return TURNS_FAST
         speed, pull = places.speed.reshape(places.speed.size), places.pull.reshape(places.pull.size)
         kick = kicks[len(drifts)] * h
-        _book(places, ends, kick, given)
+        book_ends(places, ends, kick, BY_SPRINGS, given)
         for i in range(len(places.gain)):
             speed[i] += kick * (pull[i] * places.gain[i] + places.gravity[i])
         torque, rate = book_gravity(places, h, torque, rate, given)

@@ -11,8 +11,7 @@ from typing import Any
 import numpy as np
 
 from physicslab.ecs.config import SimulationConfig
-from physicslab.lab.bench.engine import OURS, Engine
-from physicslab.lab.bench.like_quality import BLOCK, PORTION, WARM, run_alike
+from physicslab.lab.bench.engine import OURS, Engine, OtherEngine
 from physicslab.lab.bench.measure import Judge, build_others, load_kernels, spent_by_system
 from physicslab.lab.bench.random_scenes import random_scene
 from physicslab.lab.bench.result import Alike, EngineResult, SceneResult, Spread, Times, take_turns
@@ -34,6 +33,15 @@ _FEW = 4
 """Scenes of a feature from which on their median says something."""
 BESIDE = "beside systems"
 """Name of the time of steps in no system: packing, choosing and calling."""
+BLOCK, PORTION, WARM = 5, 2, 2
+"""Steps of a turn, turns between two looks at the quality, and steps before the timing, in which kernels are
+loaded and pairs are listed for the first time. Scenes that no engine is fit for take seconds a step."""
+_SLOP = 0.01
+"""A figure below it is treated as zero [m]: twice the slop of pymunk and of Box2D."""
+_FINEST = 64
+"""Most parts of a usual step."""
+_SLOWEST = 8.0
+"""Time by PhysicsLab's from which on a peer is not run in shorter steps still."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,6 +142,64 @@ def _path(world: World) -> str:
         name = " + ".join(words)
         found[name] = found.get(name, 0) + 1
     return ", ".join(name if count == 1 else f"{count} x {name}" for name, count in found.items())
+
+
+# ---- others at like quality --------------------------------------------------------------------------------
+# At their usual settings others may be faster only because they leave deeper overlaps. So each is run again
+# from the start in steps of a half, a quarter, ... of the usual length, with contacts as stiff as those
+# allow, until no figure of quality is worse than PhysicsLab's in the same steps.
+
+
+def _is_alike(found: EngineResult, ours: EngineResult) -> bool:
+    """Return whether no figure of quality is worse than PhysicsLab's."""
+    return not found.failure and all(
+        figure is not None and figure <= max(_SLOP, ours.quality.get(name) or 0.0)
+        for name, figure in found.quality.items()
+    )
+
+
+def run_alike(result: SceneResult, peer: type[Peer], ours: Times) -> Job[Alike | None]:
+    """Run a peer, that has been run at its usual settings, in shorter steps until it is as right.
+
+    Parameters
+    ----------
+    result : SceneResult
+        Results at usual settings, PhysicsLab's among them.
+    peer : type of Peer
+        Which engine.
+    ours : Times
+        The time of the same steps in PhysicsLab.
+
+    Returns
+    -------
+    Alike, optional
+        The first length of step at which it is as right, or the last that was tried; ``None`` where it
+        cannot hold the scene.
+    """
+    usual = result.engines[peer.title]
+    if usual.failure or usual.times_ours is None:
+        return None
+    found = Alike(1, usual.times_ours, _is_alike(usual, result.ours))
+    while not found.is_reached and found.finer < _FINEST and found.times_ours < _SLOWEST:
+        found = yield from _run(result, peer, 2 * found.finer, ours)
+    return found
+
+
+def _run(result: SceneResult, peer: type[Peer], finer: int, ours: Times) -> Job[Alike]:
+    """Run a peer in shorter steps, as far as it is as right as PhysicsLab."""
+    engine = OtherEngine(result.scene.build(), peer, finer)
+    here = SceneResult(result.scene, engines={peer.title: EngineResult(peer.title)})
+    judge, found = Judge(here), here.engines[peer.title]
+    engine.run(WARM)
+    judge.begin([engine])
+    steps, spent, reached = 0, 0.0, True
+    for (times,) in take_turns([engine], len(ours.step), BLOCK, PORTION):
+        judge.look([engine], "throughout")
+        steps, spent, reached = len(times.step), sum(times.step), _is_alike(found, result.ours)
+        yield 1.0
+        if not reached:
+            break
+    return Alike(finer, spent / sum(ours.step[:steps]), reached)
 
 
 # ---- the report ----------------------------------------------------------------------------------------

@@ -193,3 +193,9 @@ class Canvas(Protocol):
 
     def paint(self, painter: Painter) -> None:
         """Let something else draw on the picture: widgets do that by themselves."""
+
+
+def draw_spots(canvas: Canvas, centre: Points, radius: float, fill: Colour, rim: Colour) -> None:
+    """Draw flat discs (n, 2) of one radius [px] and the same two colours."""
+    count = len(centre)
+    canvas.discs(centre, np.full(count, radius), np.zeros(count), Look.plain(fill, rim, count))

@@ -15,7 +15,7 @@ from physicslab.state.attached import INSTRUMENTS, place_of
 from physicslab.systems.gate import GateSystem
 from physicslab.theme import Colour, Theme
 from physicslab.view.canvas.camera import Camera, Drawing
-from physicslab.view.canvas.canvas import Look, Rect, TextStyle
+from physicslab.view.canvas.canvas import Rect, TextStyle, draw_spots
 from physicslab.view.canvas.drawable_text import drawable
 from physicslab.view.canvas.quantities import quantity, rounded_up
 from physicslab.view.overlay.arrows import even_dashes
@@ -180,8 +180,7 @@ def _line_colour(chosen: bool, theme: Theme) -> tuple[Colour, float]:
 
 
 def _draw_handles(pixels: Sequence[_Pixels], on: Drawing) -> None:
-    look = Look.plain(on.theme.background, on.theme.accent, len(pixels))
-    on.canvas.discs(np.array(pixels), np.full(len(pixels), _POST + 1.5), np.zeros(len(pixels)), look)
+    draw_spots(on.canvas, np.array(pixels), _POST + 1.5, on.theme.background, on.theme.accent)
 
 
 def _draw_ruler(world: World, one: Instrument, pixels: _Places, chosen: bool, on: Drawing) -> _Drawn:
@@ -232,8 +231,7 @@ def _draw_gate(world: World, one: Instrument, pixels: _Places, chosen: bool, on:
     colour = on.theme.accent if chosen else on.theme.force if crossed else on.theme.notice
     beam = even_dashes(start, end, _BEAM_DASH)
     on.canvas.lines(*beam, colour, _CHOSEN_WIDTH if chosen or crossed else _WIDTH)
-    ends = np.stack((start, end))
-    on.canvas.discs(ends, np.full(2, _POST), np.zeros(2), Look.plain(colour, colour, 2))
+    draw_spots(on.canvas, np.stack((start, end)), _POST, colour, colour)
     words = world.label(one.entity) if one.entity else "gate"
     lines = [drawable(words[:_LETTERS])]
     if one.entity in last:

@@ -12,7 +12,7 @@ from physicslab.diagnostics.period import spring_state
 from physicslab.ecs.vector import Vector2
 from physicslab.theme import Colour
 from physicslab.view.canvas.camera import Drawing
-from physicslab.view.canvas.canvas import Canvas, Look, Numbers, Points, Rect, TextStyle
+from physicslab.view.canvas.canvas import Canvas, Numbers, Points, Rect, TextStyle, draw_spots
 from physicslab.view.canvas.quantities import quantity
 from physicslab.view.canvas.rim import rim_of
 from physicslab.view.overlay.arrows import VELOCITY, draw_arrows, even_dashes
@@ -22,8 +22,6 @@ from physicslab.world import World
 
 _RADIUS = 5.0
 """Radius of a handle [px]."""
-
-_SQUARE = np.array(((-1, -1), (1, -1), (1, 1), (-1, 1)), np.float64)
 
 type Pixel = tuple[float, float]
 
@@ -38,8 +36,7 @@ def draw_handles(middle: Pixel, places: Sequence[tuple[str, Pixel]], on: Drawing
             on.canvas.lines(start, start + span, on.theme.accent, 1.0, 0.6)
     spots = np.array([place for _, place in places])
     if len(spots):
-        look = Look.plain(on.theme.background, on.theme.accent, len(spots))
-        on.canvas.discs(spots, np.full(len(spots), _RADIUS), np.zeros(len(spots)), look)
+        draw_spots(on.canvas, spots, _RADIUS, on.theme.background, on.theme.accent)
 
 
 def draw_reading(words: str, pointer: Pixel, on: Drawing, room: Rect | None = None) -> None:
@@ -190,10 +187,8 @@ def draw_dashes(lines: Sequence[tuple[Vector2, Vector2]], on: Drawing) -> None:
         return
     for start, end in zip(spots[::2], spots[1::2], strict=True):
         on.canvas.lines(*even_dashes(start, end, _DASH), on.theme.accent, 2.0)
-    if len(lines) > _MAX_ENDS:  # a stroke
-        return
-    look = Look.plain(on.theme.accent, on.theme.accent, len(spots))
-    on.canvas.discs(spots, np.full(len(spots), _END), np.zeros(len(spots)), look)
+    if len(lines) <= _MAX_ENDS:  # no stroke
+        draw_spots(on.canvas, spots, _END, on.theme.accent, on.theme.accent)
 
 
 _SNAP_OPACITY = 0.75
@@ -214,5 +209,4 @@ def draw_snap_marks(marks: Sequence[tuple[int, float]], middle: Vector2, on: Dra
         on.canvas.lines(
             np.array([start], np.float64), np.array([end], np.float64), on.theme.accent, 1.0, _SNAP_OPACITY
         )
-    look = Look.plain(on.theme.accent, on.theme.accent, 1)
-    on.canvas.discs(np.array([(x, y)]), np.full(1, _DOT), np.zeros(1), look)
+    draw_spots(on.canvas, np.array([(x, y)]), _DOT, on.theme.accent, on.theme.accent)

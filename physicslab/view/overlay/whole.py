@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from physicslab.components import Mass, Transform, Velocity
 from physicslab.view.canvas.camera import Drawing
-from physicslab.view.canvas.canvas import Look, TextStyle
+from physicslab.view.canvas.canvas import TextStyle, draw_spots
 from physicslab.view.overlay import arrows
 from physicslab.view.overlay.legend import Overlays
 from physicslab.world import World
@@ -49,8 +49,7 @@ def _draw_centre(centre: NDArray[np.float64], words: str, on: Drawing) -> None:
     if not (np.abs(at) < 1e6).all():
         return
     theme, canvas = on.theme, on.canvas
-    look = Look.plain(theme.background, theme.heading, 1)
-    canvas.discs(at, np.array([_RADIUS]), np.zeros(1), look)
+    draw_spots(canvas, at, _RADIUS, theme.background, theme.heading)
     for turn in (0.25 * np.pi, 1.25 * np.pi):
         way = 0.45 * _RADIUS * np.array((np.cos(turn), -np.sin(turn)))
         canvas.lines(at + way, at + way, theme.heading, 0.8 * _RADIUS)

@@ -10,7 +10,7 @@ from physicslab.components.thrust import FRAMES
 from physicslab.ecs.vector import rotated
 from physicslab.theme import Theme, mixed
 from physicslab.view.canvas.camera import Camera
-from physicslab.view.canvas.canvas import Canvas, Look, Points
+from physicslab.view.canvas.canvas import Canvas, Points, draw_spots
 from physicslab.world import World
 
 _APART = 80.0
@@ -35,8 +35,7 @@ def draw_fields(world: World, camera: Camera, theme: Theme, canvas: Canvas) -> N
     colour = mixed(theme.background, theme.faint, _QUIET)
     places, apart = _marks(camera)
     if physics.magnetic_field > 0.0:
-        count = len(places)
-        canvas.discs(places, np.full(count, 2.0), np.zeros(count), Look.plain(colour, colour, count))
+        draw_spots(canvas, places, 2.0, colour, colour)
     elif physics.magnetic_field < 0.0:
         for slope in (1.0, -1.0):
             arm = np.array((_MARK, slope * _MARK))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass, field
 from operator import attrgetter
 from typing import Concatenate
 
@@ -29,7 +30,6 @@ from physicslab.view.window.framing import Framing
 from physicslab.view.window.hand import Hand
 from physicslab.view.window.handles import Handles
 from physicslab.view.window.impacts import ImpactList, Microscope
-from physicslab.view.window.key_choice import KeyChoice
 from physicslab.view.window.lab_process import ErrorStudy
 from physicslab.view.window.lesson import OpenLesson
 from physicslab.view.window.making import Making
@@ -63,6 +63,25 @@ BESIDE = (
     "shows_stopwatch", "shows_words",
 )  # fmt: skip
 """Those that lie beside the world; the others lie over it, and keys are for them."""
+
+
+@dataclass(slots=True)
+class KeyChoice:
+    """Which keys were chosen, and what the next key that is pressed is for.
+
+    Attributes
+    ----------
+    chosen : dict of str to str
+        The names of keys as SDL has them, after ``"ctrl+"`` and ``"shift+"``, by what their controls do.
+    asks : str
+        The control that gets the next key; empty for none.
+    open : bool
+        Whether the list of keys lets one choose.
+    """
+
+    chosen: dict[str, str] = field(default_factory=dict)
+    asks: str = ""
+    open: bool = False
 
 
 class Window:
