@@ -417,9 +417,8 @@ class World(Facade):
     @property
     def parts(self) -> "tuple[World, ...]":
         """The worlds that advance this one: itself, or those of its islands, that with most bodies first."""
-        worlds = [island.state for island in self.islands.members]
-        parts = tuple(world for world in worlds if isinstance(world, World)) or (self,)
-        return tuple(sorted(parts, key=lambda part: -int(np.count_nonzero(part.bodies.inverse_mass))))
+        worlds = [one.state for one in self.islands.members if isinstance(one.state, World)] or [self]
+        return tuple(sorted(worlds, key=lambda part: -int(np.count_nonzero(part.bodies.inverse_mass))))
 
     @property
     def plans(self) -> tuple[StepPlan, ...]:

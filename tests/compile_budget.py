@@ -29,6 +29,8 @@ LIMIT_EACH_S = 6.0
 by how much, and it is not moved."""
 _SAMPLE, _SAMPLE_S = 500_000, 0.0255
 """Steps of a loop that is timed between kernels, and what it takes on the processor of the limits, idle."""
+_EVERY = 8
+"""Kernels from one such loop to the next."""
 
 
 def measure() -> tuple[list[tuple[float, str]], float]:
@@ -51,7 +53,8 @@ def measure() -> tuple[list[tuple[float, str]], float]:
                 start = time.process_time()
                 load(jitted)
                 costs.append((time.process_time() - start, name_of(jitted)))
-                samples.append(_sample())
+                if len(costs) % _EVERY == 1:
+                    samples.append(_sample())
         finally:
             gc.enable()
             cache.use_directory(target)

@@ -71,15 +71,12 @@ class RecordingCanvas:
         self.calls.append(("rounded", {"shapes": shapes, "look": look}))
 
     def lines(
-        self, start: Points, end: Points, colour: Colour, width: float = 1.0, opacity: float | Numbers = 1.0
-    ) -> None:
-        """Note the lines."""
+        self, start: Points, end: Points, colour: Colour | NDArray[np.uint8], width: float | Numbers = 1.0,
+        opacity: float | Numbers = 1.0,
+    ) -> None:  # fmt: skip
+        """Note the lines, as strokes where each has a colour of its own."""
         given = {"start": start, "end": end, "colour": colour, "width": width, "opacity": opacity}
-        self.calls.append(("lines", given))
-
-    def strokes(self, start: Points, end: Points, colour: NDArray[np.uint8], width: Numbers) -> None:
-        """Note the lines."""
-        self.calls.append(("strokes", {"start": start, "end": end, "colour": colour, "width": width}))
+        self.calls.append(("strokes" if isinstance(colour, np.ndarray) else "lines", given))
 
     def panel(self, rect: Rect, colour: Colour, outline: Colour, opacity: float = 1.0) -> None:
         """Note the rectangle."""

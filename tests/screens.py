@@ -6,6 +6,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -79,7 +80,8 @@ class Screen:
         """Press Escape until the program ends, which must be without a word."""
         try:
             for _ in range(3):  # not within a second of what closed something
-                time.sleep(1.2)
+                with suppress(subprocess.TimeoutExpired):
+                    program.wait(1.2)
                 if program.poll() is None:
                     self.do("key", "Escape")
             out, err = program.communicate(timeout=20)

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pygame
 import pytest
-from desk import Desk, bits, empty_world
+from desk import Desk, empty_world
 from recording import RecordingCanvas
 from test_hud import MeasuringCanvas
 
@@ -214,18 +214,6 @@ def test_a_gauge_is_round_and_does_not_flicker() -> None:
     assert gauge.per_metre == 5.0, "begun again after a fall of ten minutes"
     gauge.follow(np.zeros(0), reach=1.0, time=60.0)
     assert gauge.per_metre == 5.0, "a scene with nothing in it has no scale of its own, 1e-5 m/s a metre"
-
-
-def test_rendering_with_overlays_changes_nothing() -> None:
-    states = []
-    for keys in ((), ("v", "e")):
-        world = load_scene("pile")
-        desk = Desk(world, RecordingCanvas((1280, 720)))
-        for key in keys:
-            desk.key(key)
-        desk.frames(300)
-        states.append(bits(world))
-    assert states[0] == states[1]
 
 
 @pytest.mark.parametrize("size", [(1280, 720), (800, 600), (1920, 1080)])

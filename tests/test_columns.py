@@ -3,6 +3,7 @@
 import copy
 import math
 import pickle
+import re
 from collections.abc import Callable
 from typing import Any
 
@@ -11,7 +12,23 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from physicslab.components import Drag, Mass, Material, Name, Shape, Spring, Trail, Transform, Velocity
+from physicslab.components import (
+    Drag,
+    Mass,
+    Material,
+    Medium,
+    Molecule,
+    Name,
+    Pin,
+    Rod,
+    Shape,
+    Slot,
+    Spring,
+    Thrust,
+    Trail,
+    Transform,
+    Velocity,
+)
 from physicslab.ecs.component import (
     COMPONENTS,
     Component,
@@ -24,6 +41,7 @@ from physicslab.ecs.component import (
 from physicslab.ecs.config import SimulationConfig
 from physicslab.ecs.table import Table
 from physicslab.ecs.vector import Vector2
+from physicslab.prefabs import circle
 from physicslab.systems.standard import standard_systems
 from physicslab.systems.system import Stage, System, at
 from physicslab.world import World
@@ -444,3 +462,37 @@ def test_a_number_written_to_a_column_is_refused_as_its_handle_refuses_it(
     assert world.time == before
     world.table(kind)[name][row] = kept
     world.step()
+
+
+@pytest.mark.parametrize("contacts", ["soft", "rigid"])
+@pytest.mark.parametrize(
+    ("kind", "name", "value", "line"),
+    [
+        (Rod, "length", math.nan, "Rod.length = nan: must be a finite number >"),
+        (Pin, "max_torque", math.inf, "Pin.max_torque = inf: must be a finite number >= 0"),
+        (Slot, "axis", 0.0, "Slot.axis = (0.0, 0.0): must be a direction"),
+        (Medium, "density", -1.0, "Medium.density = -1.0: must be a finite number >= 0"),
+        (Molecule, "depth", math.nan, "Molecule.depth = nan: must be a finite number >= 0"),
+        (Thrust, "force", math.inf, "Thrust.force = [inf, inf]: must be two finite numbers"),
+    ],
+)
+def test_what_a_handle_refuses_is_refused_in_a_column(
+    contacts: str, kind: type[Any], name: str, value: float, line: str
+) -> None:
+    """Lengths that were no numbers were taken without a word, and an axis of no length was divided by."""
+    world = World(simulation=SimulationConfig(contacts=contacts))
+    bodies = [circle(world, (x, 1.0), radius=0.2) for x in (0.0, 1.0, 2.0)]
+    world.spawn(Rod(None, bodies[0], anchor_a=(0.0, 2.0)))
+    world.spawn(Pin(None, bodies[1], anchor_a=(1.0, 1.0), motor_speed=1.0, max_torque=1.0))
+    world.spawn(Slot(None, bodies[2], anchor_a=(2.0, 1.0)))
+    world.spawn(Transform((0.0, 1.0)), Shape.box(6.0, 2.0), Medium())
+    for body in bodies:
+        world.add(body, Molecule())
+    world.add(bodies[0], Thrust((1.0, 0.0)))
+    world.run(steps=2)
+    table, before = world.table(kind), world.table(Transform)["position"].copy()
+    table[name][np.flatnonzero(table.present)[-1]] = value
+    for _ in range(2):
+        with pytest.raises(InvalidValue, match=re.escape(line)):
+            world.step()
+    assert np.array_equal(world.table(Transform)["position"], before) and world.steps == 2

@@ -158,6 +158,12 @@ def children(process: int) -> list[int]:
         return []
 
 
+def disturbances(config: pytest.Config) -> int:
+    """Return how often a sweep is killed or interrupted: by kills, the sweep itself and a worker in turn."""
+    effort: float = config.getoption("effort")
+    return max(2, round(4 * effort))
+
+
 def killed_and_resumed(out: Path, kills: int, rng: random.Random) -> int:
     """Run the sweep, kill a worker or the sweep itself at random moments, and let it come to its end.
 
@@ -183,9 +189,11 @@ def killed_and_resumed(out: Path, kills: int, rng: random.Random) -> int:
 
 @pytest.mark.slow
 @pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="children are listed in /proc")
-def test_killed_at_random_moments_it_comes_to_the_same_bytes(tmp_path: Path, whole: dict[str, bytes]) -> None:
+def test_killed_at_random_moments_it_comes_to_the_same_bytes(
+    tmp_path: Path, whole: dict[str, bytes], pytestconfig: pytest.Config
+) -> None:
     out = tmp_path / "killed.npz"
-    kills, rng = int(os.environ.get("PHYSICSLAB_KILLS", "4")), random.Random(1)
+    kills, rng = disturbances(pytestconfig), random.Random(1)
     for _ in range(5 * kills):
         kills = killed_and_resumed(out, kills, rng)
         assert kept(out) == whole
@@ -201,10 +209,10 @@ def test_killed_at_random_moments_it_comes_to_the_same_bytes(tmp_path: Path, who
     not hasattr(os, "killpg"), reason="needs groups of processes, to which a terminal signals"
 )
 def test_ctrl_c_at_random_moments_says_one_line_and_the_rest_comes_to_the_same_bytes(
-    tmp_path: Path, whole: dict[str, bytes]
+    tmp_path: Path, whole: dict[str, bytes], pytestconfig: pytest.Config
 ) -> None:
     out, rng = tmp_path / "interrupted.npz", random.Random(2)
-    for _ in range(int(os.environ.get("PHYSICSLAB_KILLS", "4"))):
+    for _ in range(disturbances(pytestconfig)):
         process = subprocess.Popen(
             command("--out", str(out), "--workers", "2"), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
             text=True, start_new_session=True,

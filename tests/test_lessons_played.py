@@ -1,5 +1,10 @@
-"""Every lesson is played in the window from its beginning to its end, by mouse and keys, in each language."""
+"""Every lesson is played in the window from beginning to end, by mouse and keys, each in one language.
 
+tests/test_lessons.py shows that it has the same parts and runs in each, tests/test_languages.py that longer
+texts fit.
+"""
+
+from itertools import cycle
 from pathlib import Path
 
 import pygame
@@ -78,8 +83,7 @@ def keep_picture(desk: Desk, path: Path) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("code", languages())
-@pytest.mark.parametrize("name", LESSONS)
+@pytest.mark.parametrize(("name", "code"), [*zip(LESSONS, cycle(languages()), strict=False)])
 def test_a_lesson_is_played_to_its_end(
     name: str, code: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest
 ) -> None:

@@ -143,6 +143,7 @@ SECTIONS = [
     ({"physics": {"softening": -1}}, "physics.softening = -1: must be a finite number >= 0"),
     ({"physics": {"linear_damping": -1}}, "physics.linear_damping = -1: must be a finite number >= 0"),
     ({"physics": {"bounds": [0, 0, 0, 1]}}, "physics.bounds = [0"),
+    ({"physics": {"bounds": "wide"}}, 'physics.bounds = "wide": must be null or four'),
     (
         {"physics": {"bounds_restitution": 2}},
         "physics.bounds_restitution = 2: must be a finite number from 0",

@@ -60,18 +60,10 @@ def test_one_ball_is_interpreted_with_the_bits_of_compiled_code(tmp_path: Path) 
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("arguments", "needed"),
-    [
-        (("pendulum", "--seconds", "200"), "dop853"),
-        (("two_planets", "--integrator", "rk4", "--dt", "0.0005"), "rk4"),
-    ],
-)
-def test_what_is_slow_is_compiled_after_its_first_part_and_ends_in_the_same_bits(
-    arguments: tuple[str, ...], needed: str, tmp_path: Path
-) -> None:
+def test_what_is_slow_is_compiled_after_its_first_part_and_ends_in_the_same_bits(tmp_path: Path) -> None:
+    arguments = ("pendulum", "--seconds", "200")
     changing, compiled = run_cold(tmp_path, *arguments)
-    assert needed in compiled
+    assert "dop853" in compiled
     assert same_results(run(*arguments), changing)
 
 

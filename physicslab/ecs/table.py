@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.ecs.component import Component
-from physicslab.ecs.fields import Kind
+from physicslab.ecs.fields import Field, InvalidValue, Kind
 
 _DTYPES: Mapping[Kind, type] = {
     "number": np.float64,
@@ -24,7 +24,7 @@ _DTYPES: Mapping[Kind, type] = {
     "points": np.int64,
 }
 
-
+_NUMBERS = "number", "whole", "vector"
 _LINE = 64
 """Bytes at multiples of which columns begin: those of a line of the cache."""
 
@@ -93,6 +93,32 @@ class Table:
         handle._views, handle._row = self._views, row
         self._present[row] = True
         self.handles[entity] = handle
+
+    def refuse_written(self, entities: NDArray[np.int64], label: Callable[[int], str]) -> None:
+        """Refuse what was written to the columns of some entities (n,) and their handles would have refused.
+
+        Raises
+        ------
+        InvalidValue
+            With the ``label`` of the first such entity.
+        """
+        handles = [self.handles[entity] for entity in entities.tolist()]
+        rows = np.array([handle._row for handle in handles], np.int64)
+        together = self.component.validate is not Component.validate
+        wrong: list[tuple[int, Field | None]] = [(k, None) for k in range(len(rows) * together)]
+        for spec in self.component.FIELDS:
+            if spec.kind in _NUMBERS and len(rows):
+                values = self[spec.name][rows]
+                least = -spec.highest if spec.kind == "vector" else spec.lowest
+                out = ~((values >= least) & (values <= spec.highest)).reshape(len(rows), -1).all(axis=1)
+                out &= self[f"{spec.name}_given"][rows] if spec.derived else True
+                wrong[:0] = [(k, spec) for k in np.flatnonzero(out).tolist()]
+        for k, one in wrong:
+            try:
+                handles[k].validate() if one is None else one.check(self[one.name][rows[k]].tolist())
+            except InvalidValue as error:
+                owner = f"{label(int(entities[k]))}: {error.component}"
+                raise InvalidValue(owner, error.field, error.value, error.allowed) from None
 
     def blank(self) -> Component:
         """Return a component of no entity, whose values are all zero: it is adopted before any is written."""

@@ -117,7 +117,7 @@ def checked_keys(given: Mapping[str, Any], where: str, noun: str, known: Sequenc
 def refuse_written(given: Mapping[str, Any], fields: Mapping[str, Field], where: str) -> None:
     """Refuse numbers that are texts: a file has SI numbers, whatever reads it."""
     for name, value in given.items():
-        if is_written(value) and fields[name].kind in MEASURED:
+        if name in fields and is_written(value) and fields[name].kind in MEASURED:
             raise refusal(f"{where}{name}", value, fields[name].allowed)
 
 

@@ -225,6 +225,9 @@ class Joints:
         That bodies have come or gone, so that rows are numbered again, is no change of a joint.
         """
         changed = bool(self.joints) and self._columns(index) != self._settings
+        if changed:
+            for kind in self._kinds:
+                index.table(kind).refuse_written(index.batch(kind).entities, label_in_context)
         if changed or (self.joints and self._entities is not index.entities):
             self.rebuild(index)
         return changed

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, field
 
+from physicslab.components import Transform, Velocity
 from physicslab.state.state import State
 from physicslab.stepping.asleep import Asleep
 from physicslab.stepping.event_driven import EventDriven
@@ -87,6 +88,10 @@ def select_steppers(state: State, schedule: Schedule, plan: StepPlan) -> Stepper
 
 def choose(state: State, schedule: Schedule, plan: StepPlan | None = None) -> tuple[StepPlan, Steppers]:
     """Choose the steppers for the systems that run, and the method, unless there is a ``plan`` already."""
+    for force in schedule.forces:
+        if force.needs and force.needs[0] not in (Transform, Velocity):  # which motion writes
+            entities = state.batch(*force.needs).entities
+            state.table(force.needs[0]).refuse_written(entities, state.label)
     before = state.event_driven
     plan = plan or choose_plan(state, schedule)
     state.rigid_contacts = plan.contacts == "rigid"

@@ -175,12 +175,13 @@ class Canvas(Protocol):
         """Draw rounded polygons, each with a rim."""
 
     def lines(
-        self, start: Points, end: Points, colour: Colour, width: float = 1.0, opacity: float | Numbers = 1.0
-    ) -> None:
-        """Draw straight lines between ends (n, 2) [px], with round ends; one opacity or one for each (n,)."""
+        self, start: Points, end: Points, colour: Colour | NDArray[np.uint8], width: float | Numbers = 1.0,
+        opacity: float | Numbers = 1.0,
+    ) -> None:  # fmt: skip
+        """Draw straight lines between ends (n, 2) [px], with round ends, in their order.
 
-    def strokes(self, start: Points, end: Points, colour: NDArray[np.uint8], width: Numbers) -> None:
-        """Draw straight lines with round ends, each of its own colour (n, 3) and width."""
+        Colour, width and opacity are those of all, or each has its own: (n, 3), (n,), (n,).
+        """
 
     def panel(self, rect: Rect, colour: Colour, outline: Colour, opacity: float = 1.0) -> None:
         """Draw a rectangle with rounded corners and a thin outline."""

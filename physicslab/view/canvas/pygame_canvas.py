@@ -113,25 +113,17 @@ class PygameCanvas:
         paint(self._pixels(), corners, shapes.vertices, *placed, *colours, RIM, look.shadow, self._sides)
 
     def lines(
-        self, start: Points, end: Points, colour: Colour, width: float = 1.0, opacity: float | Numbers = 1.0
-    ) -> None:
-        """Draw straight lines of one kind, with round ends; each may have an opacity of its own."""
-        count = len(start)
-        alike = np.tile(np.array(colour, np.uint8), (count, 1)), np.full(count, width)
-        self._lines(start, end, *alike, np.full(count, opacity) if isinstance(opacity, float) else opacity)
-
-    def strokes(self, start: Points, end: Points, colour: NDArray[np.uint8], width: Numbers) -> None:
-        """Draw straight lines with round ends, each of its own colour (n, 3) and width."""
-        self._lines(start, end, colour, width, np.ones(len(start)))
-
-    def _lines(
-        self, start: Points, end: Points, colour: NDArray[np.uint8], width: Numbers, opacity: Numbers
-    ) -> None:
+        self, start: Points, end: Points, colour: Colour | NDArray[np.uint8], width: float | Numbers = 1.0,
+        opacity: float | Numbers = 1.0,
+    ) -> None:  # fmt: skip
+        """Draw lines with round ends; each may have its own colour (n, 3), width or opacity (n,)."""
+        colours = np.broadcast_to(np.array(colour, np.uint8), (len(start), 3))
+        widths, opacities = (np.zeros(len(start)) + one for one in (width, opacity))
         paint = _painter("paint_lines")
         if paint is None:
-            draw_lines(self.surface, start, end, colour, width, opacity)
+            draw_lines(self.surface, start, end, colours, widths, opacities)
             return
-        paint(self._pixels(), *map(_plain, (start, end, width, opacity)), self._packed(colour))
+        paint(self._pixels(), *map(_plain, (start, end, widths, opacities)), self._packed(colours))
 
     def panel(self, rect: Rect, colour: Colour, outline: Colour, opacity: float = 1.0) -> None:
         """Draw a rectangle with rounded corners and a thin outline."""

@@ -103,7 +103,7 @@ class Pen:
             seen = ((high > 0.0) & (low < np.array(self.camera.size))).all(axis=1)
             seen &= ((low > -_FAR) & (high < _FAR)).all(axis=1)
         if seen.any():
-            canvas.strokes(start[seen], end[seen], colour[seen], width[seen])
+            canvas.lines(start[seen], end[seen], colour[seen], width[seen])
 
 
 def aside(way: Points) -> Points:

@@ -127,7 +127,7 @@ def draw_trails(world: World, camera: Camera, theme: Theme, canvas: Canvas) -> N
     widest = np.clip(_SHARE * _sizes(world, rows, camera), _MIN_WIDTH, _MAX_WIDTH)[trail]
     width = _MIN_WIDTH + (widest - _MIN_WIDTH) * young * room
     colour = theme.faded(own_colours(world, theme, rows)[trail], _NEWEST_SHARE * young)
-    canvas.strokes(start[drawn], end[drawn], colour, width)
+    canvas.lines(start[drawn], end[drawn], colour, width)
 
 
 def _sizes(world: World, rows: NDArray[np.int64], camera: Camera) -> NDArray[np.float64]:
