@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from physicslab import World, load_scene
 from physicslab.components import Transform
 from physicslab.diagnostics.energy import Accounts, Audit
+from physicslab.stepping.soft import Soft
 from physicslab.systems.system import Stage, System, at
 
 DRAGS: dict[str, dict[str, Any]] = {
@@ -151,3 +152,23 @@ def test_a_thrust_works_along_the_way_by_which_impacts_move_what_it_pushes(
     assert world.collisions > 0
     assert account.energy["impacts"] < -1e-2
     assert abs(account.energy["numerical"]) < -1e-9 * account.energy["impacts"]
+
+
+@pytest.mark.parametrize("damping", [0.0, 0.4])
+def test_each_spring_on_a_body_that_moves_at_a_given_speed_is_work_of_what_moves_it(damping: float) -> None:
+    hub = {
+        "Transform": {"position": [0.0, 5.0]},
+        "Velocity": {"linear": [1.0, 0.3], "angular": 0.4},
+        "id": "hub",
+    }
+    balls = [
+        {**body(-1.0 + n, 4.0, Shape={"kind": "circle", "radius": 0.2}), "id": f"ball {n}"} for n in range(3)
+    ]
+    springs = [
+        {"Spring": {"a": "hub", "b": f"ball {n}", "stiffness": 30.0, "damping": damping, "rest_length": 1.0}}
+        for n in range(3)
+    ]
+    world, account = after(scene(hub, *balls, *springs, fixed(0.0, 0.0)), 30)
+    assert any(isinstance(part.stepper, Soft) for part in world.parts)
+    assert account.energy["hand"] > 1.0
+    assert abs(account.energy["numerical"]) < 1e-3 * account.energy["hand"]

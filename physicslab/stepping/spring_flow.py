@@ -42,17 +42,18 @@ def why_no_spring_flow(state: State, forces: Sequence[ForceSystem]) -> str | Non
     return None
 
 
-def _in_blocks(a: NDArray[np.int64], b: NDArray[np.int64], movable: NDArray[np.bool_]) -> NDArray[np.int64]:
+def _in_blocks(a: NDArray[np.int64], b: NDArray[np.int64], moving: int) -> NDArray[np.int64]:
     """Return the springs in blocks of eight (8 n,), -1 where there is none.
 
-    No two of a block pull at one body that can be moved. Each goes into the first block with room after
-    those of the springs before it that do.
+    No two of a block pull at one of the bodies that move, the first so many; what a hand or a given speed
+    moves is among these, as the work on it is booked. Each goes into the first block with room after those
+    of the springs before it that do.
     """
-    free, can_move = [0] * len(movable), movable.tolist()
+    free = [0] * moving
     blocks: list[list[int]] = []
     full = 0  # all blocks before this one are
     for spring, ends in enumerate(zip(a.tolist(), b.tolist(), strict=True)):
-        held = [end for end in ends if can_move[end]]
+        held = [end for end in ends if end < moving]
         block = max(full, *(free[end] for end in held)) if held else full
         while block < len(blocks) and len(blocks[block]) == WIDE:
             block += 1
@@ -102,9 +103,7 @@ class SpringFlow:
         (ends_a, ends_b), (p, spare) = self._ends(state, rows, a, b)
         turns = self._turns(state, rows, a, b)
         turned = bodies.inverse_inertia[moving] * turns
-        movable = np.zeros(p, np.bool_)
-        movable[: len(moving)] = (inverse > 0.0) | (turned > 0.0)
-        order = _in_blocks(ends_a, ends_b, movable)
+        order = _in_blocks(ends_a, ends_b, len(moving))
         used = order >= 0
         slots = [np.where(used, end[order], spare) for end in (ends_a, ends_b)]
         ends = np.concatenate((np.flatnonzero(inverse == 0.0), np.arange(len(moving), spare)))
