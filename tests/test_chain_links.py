@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from physicslab import World
@@ -45,6 +45,7 @@ def round_ground(world: World, *, restitution: float = 0.0, friction: float = 0.
 
 
 @given(st.lists(st.tuples(st.floats(0.1, 3.0), st.floats(-SMOOTH, SMOOTH)), min_size=2, max_size=40))
+@example([(0.9083632821479097, 0.0), (1.2985095355740277, 1e-9)])
 def test_what_is_smooth_has_no_corner_but_its_ends(ways: list[tuple[float, float]]) -> None:
     place, direction, vertices = Vector2(), 0.0, [(0.0, 0.0)]
     for length, turn in ways:

@@ -49,7 +49,10 @@ class Energy:
     @property
     def total(self) -> float:
         """Kinetic and potential energy [J], added up in the order in which balances do (to the bit)."""
-        return sum(self.potential.values(), self.kinetic)
+        total = self.kinetic
+        for stored in self.potential.values():  # sum() would carry what rounding loses
+            total += stored
+        return total
 
 
 @dataclass(frozen=True, slots=True)

@@ -85,8 +85,9 @@ def _rows(
     count, links = len(along), list[_Row]()
     turns = [_turn(*along[k - 1], *along[k % count]) for k in range(count + 1)]
     used = [0.5 * min(length[k - 1], length[k % count]) for k in range(count + 1)]
-    used = [
-        way if abs(turn) <= SMOOTH + _ANGLE_ROUNDING else 0.0 for way, turn in zip(used, turns, strict=True)
+    used = [  # nothing where a turn that was just beyond rounding is within it, taken of whole lengths
+        way if 0.0 < abs(turn) <= SMOOTH + _ANGLE_ROUNDING else 0.0
+        for way, turn in zip(used, turns, strict=True)
     ]
     if not closed:
         used[0] = used[-1] = 0.0

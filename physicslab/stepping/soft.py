@@ -86,8 +86,6 @@ class Soft(Stepper):
         factor = max(contacts.substep_factor, falls_far(state, h / parts))
         state.substeps = factor * state.simulation.substeps
         refill(state)
-        if self._broad_phase is not None:
-            self._broad_phase.follow_rows(state)
         rested = min(h, state.simulation.dt)  # of a divided step only the end is observed
         finer = contacts.substep_factor if unequal else 0
         span = Span(parts * state.substeps, h / parts / state.substeps, h, state.time, rested, finer)
@@ -109,6 +107,8 @@ class Soft(Stepper):
         parts, wanted = self._call[1], steps
         steps = 1 if self.hooks or parts > 1 else min(steps, self._max_steps)
         began = working_ns() if wanted > 1 else 0
+        if self._broad_phase is not None and (state.contacts.stale or not again):
+            self._broad_phase.follow_rows(state)
         if self._contact is not None:
             self._contact.begin_step(state)
         if self.substeps.split is not None:
