@@ -6,13 +6,17 @@ import shutil
 import subprocess
 import sys
 import zipfile
+from base64 import urlsafe_b64encode
 from collections.abc import Callable
+from hashlib import sha256
 from pathlib import Path
 from typing import Any
+from unittest.mock import ANY
 
 import compile_budget
 import pytest
 
+import physicslab
 from physicslab import cli
 from physicslab.commands import kernels as command
 from physicslab.kernels import archive, cache, keys
@@ -286,12 +290,44 @@ def test_export_and_import(
     assert kept(root) == before
 
 
+def test_a_wheel_is_installed_where_kernels_are_looked_for(
+    root: Path, packed: Path, compiled: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its record is checked by hand here, as an installer does."""
+    unpack(packed)
+    before = kept(root)
+    cache.mark().write_text("\n".join(path.name for path in root.iterdir() if path.is_dir()))
+    out = tmp_path / "dist"
+    out.mkdir()
+    assert cli.main(["kernels", "wheel", str(out)]) == 0
+    (file,) = out.iterdir()
+    name, version, tag, *_ = file.name.split("-")
+    assert (name, version) == ("physicslab_kernels_native", physicslab.__version__)
+    assert tag == f"cp{sys.version_info[0]}{sys.version_info[1]}"
+    with zipfile.ZipFile(file) as archive:
+        lines = archive.read(f"{name}-{version}.dist-info/RECORD").decode().splitlines()
+        assert sorted(line.split(",")[0] for line in lines) == sorted(archive.namelist())
+        for path, digest, size in (line.split(",") for line in lines[:-1]):
+            content = archive.read(path)
+            assert len(content) == int(size)
+            assert digest == f"sha256={urlsafe_b64encode(sha256(content).digest()).decode().rstrip('=')}"
+        archive.extractall(tmp_path / "there")
+    prefix = tmp_path / "there" / f"{name}-{version}.data" / "data"
+    assert kept(prefix / "share" / "physicslab" / "kernels") == {**before, cache.mark().name: ANY}
+    monkeypatch.setattr(sys, "prefix", str(prefix))
+    monkeypatch.setattr(cache, "_is_safe", lambda *_: True)  # the folder of a test may be anywhere
+    assert cache._first_shared() == prefix / "share" / "physicslab" / "kernels"
+
+
 @pytest.mark.parametrize(
     ("arguments", "reason"),
     [
+        (["wheel"], "FILE is missing"),
+        (["wheel", "nowhere"], "cannot be written"),
+        (["--cpu", "x86-64-v2", "import", "kernels.zip"], "must go with export or wheel"),
         (["export"], "FILE is missing"),
         (["import"], "FILE is missing"),
-        (["foo"], "argument ACTION: invalid choice: 'foo' (choose from 'export', 'import')"),
+        (["foo"], "argument ACTION: invalid choice: 'foo' (choose from 'export', 'import', 'wheel')"),
         (["import", "nothing"], "No such file"),
         (["import", "a\0b"], "null"),
         (["import", "."], "directory"),

@@ -5,13 +5,15 @@ import sys
 from argparse import Namespace
 from pathlib import Path
 
+import physicslab
 from physicslab.commands import FAILED, CommandError
 from physicslab.commands.output import Output
 from physicslab.commands.progress import Progress
 from physicslab.ecs.text import printable
 from physicslab.files.replace import reason_of
 from physicslab.kernels import cache_directory
-from physicslab.kernels.archive import ArchiveError, pack, unpack
+from physicslab.kernels.archive import ArchiveError, pack, unpack, wheel
+from physicslab.kernels.cache import mark
 from physicslab.kernels.keys import platform_key, use_processor
 from physicslab.kernels.warm import Warmup, is_warm, load_all, mark_warm, work
 
@@ -28,8 +30,8 @@ def execute(arguments: Namespace) -> int:
     if (arguments.action is None) != (arguments.file is None):
         raise CommandError(f"kernels {arguments.action}: FILE is missing (see physicslab kernels --help)")
     if arguments.cpu != "native":
-        if arguments.action != "export":
-            raise CommandError(f"--cpu {arguments.cpu}: must go with export")
+        if arguments.action not in ("export", "wheel"):
+            raise CommandError(f"--cpu {arguments.cpu}: must go with export or wheel")
         if platform.machine() not in ("x86_64", "AMD64"):
             raise CommandError(
                 f"--cpu {arguments.cpu}: this is {platform.machine()}, of which there are no kinds"
@@ -38,11 +40,13 @@ def execute(arguments: Namespace) -> int:
         use_processor(arguments.cpu)
     if arguments.action == "import":
         return _import(arguments.file)
+    if arguments.action == "wheel":
+        return _wheel(Path(arguments.file))
     output = None if arguments.action is None else Output("kernels export", arguments.file)
     _fill()
     if output is not None:
         return _export(output)
-    print(f"{len(load_all())} kernels are compiled, and kept in {printable(str(cache_directory()))}")
+    print(f"{len(load_all())} kernels are compiled, and kept in {printable(str(mark().parent))}")
     return 0
 
 
@@ -59,13 +63,26 @@ def _fill() -> None:
 
 
 def _export(output: Output) -> int:
-    content = pack()
+    _write(output, pack())
+    return 0
+
+
+def _wheel(folder: Path) -> int:
+    """Write a wheel into a folder, by the name that installers go by."""
+    Output("kernels wheel", str(folder / "wheel"))  # before anything is compiled
+    _fill()
+    name, content = wheel(physicslab.__version__)
+    _write(Output("kernels wheel", str(folder / name)), content)
+    return 0
+
+
+def _write(output: Output, content: bytes) -> None:
+    """Write an archive, and say which computers it fits."""
     output.write(content)
     if not output.to_stdout:
         kind = ", ".join(f"{name} {value}" for name, value in platform_key().items())
         print(f"{len(content) / 1e6:.1f} MB written to {printable(output.path)}")
         print(f"They fit computers with {kind}")
-    return 0
 
 
 def _import(file: str) -> int:

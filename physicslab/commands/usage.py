@@ -287,13 +287,14 @@ def export(parser: ArgumentParser) -> None:
 def kernels(parser: ArgumentParser) -> None:
     """Compile the physics for this computer ahead of time, or share it with others of its kind."""
     parser.add_argument(
-        "action", nargs="?", choices=("export", "import"), metavar="ACTION",
+        "action", nargs="?", choices=("export", "import", "wheel"), metavar="ACTION",
         help="export: compile all and write them to FILE; import: take them from FILE in place of compiling; "
-        "neither: compile all and keep them",
+        "wheel: write them as a package to be installed beside physicslab, into the folder FILE; none of "
+        "these: compile all and keep them",
     )  # fmt: skip
-    words = "with export: for any processor of the kind, in place of just this one; the same bits (native)"
+    words = "export, wheel: for any processor of the kind, in place of just this one; the same bits (native)"
     parser.add_argument("--cpu", choices=("native", "x86-64-v3", "x86-64-v2"), default="native", help=words)
-    parser.add_argument("file", metavar="FILE", nargs="?", help="an archive of compiled kernels")
+    parser.add_argument("file", metavar="FILE", nargs="?", help="an archive of compiled kernels, or a folder")
     parser.add_argument("--worker", action="store_true", help=SUPPRESS)  # what Warmup starts
 
 

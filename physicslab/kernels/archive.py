@@ -1,7 +1,7 @@
 """Compiled kernels as one file, for other computers of the same kind: one compiles, a classroom loads.
 
-The file is a zip archive of the cache's folders and of ``manifest.json``, which says what they fit. Kernels
-are programs: an archive is to be trusted like one.
+The file is a zip archive of the cache's folders and of ``manifest.json``, which says what they fit; or a
+wheel, which is installed beside the program. Kernels are programs: an archive is to be trusted like one.
 """
 
 import hashlib
@@ -11,13 +11,16 @@ import os
 import re
 import secrets
 import struct
+import sys
 import zipfile
 import zlib
-from collections.abc import Collection
+from base64 import urlsafe_b64encode
+from collections.abc import Collection, Iterable, Mapping
 from pathlib import Path
+from sysconfig import get_platform
 from typing import Any
 
-from physicslab.kernels import keys
+from physicslab.kernels import cache, keys
 from physicslab.kernels.cache import cache_directory, place_of
 
 _FORMAT = "physicslab-kernels/1"
@@ -26,6 +29,16 @@ _MEMBER = re.compile(r"([A-Za-z_][\w.]*-[0-9a-f]{16})/([\w.<>-]+\.nb[ic])", re.A
 _MANIFEST_LIMIT = 1 << 20
 _LIMIT = 1 << 27
 """Size [bytes] of an archive, and of what it may hold in all; a full set of kernels is a tenth of that."""
+_METADATA = """\
+Metadata-Version: 2.1
+Name: physicslab-kernels-{kind}
+Version: {version}
+Summary: Compiled kernels of physicslab, for {system} and processors of the kind {kind}
+Requires-Python: =={python}.*
+Requires-Dist: physicslab=={version}
+Requires-Dist: numba=={numba}
+Requires-Dist: llvmlite=={llvmlite}
+"""
 _DAMAGE = (
     zipfile.BadZipFile, zlib.error, EOFError, OSError, NotImplementedError, RuntimeError, ValueError,
     struct.error,
@@ -46,22 +59,62 @@ def pack(folders: Collection[str] | None = None) -> bytes:
         The names of the cache's folders that are packed; those of all modules where none are given.
     """
     cache_directory()  # it determines for which processor is compiled
-    buffer = io.BytesIO()
-    chosen = keys.current_folders().values() if folders is None else folders
-    files = {
-        f"{folder}/{path.name}": path.read_bytes()
-        for folder in sorted(chosen)
-        for path in sorted(place_of(folder).glob("*.nb[ic]"))
-    }
+    files = _kept(keys.current_folders().values() if folders is None else folders)
     document = {
         "format": _FORMAT,
         "sources": keys.sources_key(),
         "platform": keys.platform_key(),
         "files": {name: _hash(content) for name, content in files.items()},
     }
+    return _zipped({_MANIFEST: json.dumps(document, indent=1).encode(), **files})
+
+
+def wheel(version: str) -> tuple[str, bytes]:
+    """Return a wheel of all kernels, which the cache holds: the name of its file, and its content.
+
+    Installers check the hash of each file (PEP 427) and put them where :mod:`physicslab.kernels.cache` finds
+    kernels that are only read.
+
+    Parameters
+    ----------
+    version : str
+        That of this package; other versions find nothing there that is theirs.
+    """
+    mark, platform, python = cache.mark(), keys.platform_key(), sys.version_info
+    kind = platform["processor"] if platform["processor"] in keys.LEVELS else "native"
+    name = f"physicslab_kernels_{re.sub('[-.]', '_', kind)}-{version}"
+    tag = f"cp{python[0]}{python[1]}-none-{re.sub('[-.]', '_', get_platform())}"
+    folder = f"{name}.data/data/{cache.SHARED}"
+    files = {mark.name: mark.read_bytes(), **_kept(mark.read_text(encoding="utf-8").split())}
+    members = {f"{folder}/{path}": content for path, content in files.items()}
+    told = _METADATA.format(kind=kind, version=version, python=f"{python[0]}.{python[1]}", **platform)
+    members[f"{name}.dist-info/METADATA"] = told.encode()
+    members[f"{name}.dist-info/WHEEL"] = f"Wheel-Version: 1.0\nRoot-Is-Purelib: false\nTag: {tag}\n".encode()
+    record = f"{name}.dist-info/RECORD"
+    members[record] = "".join([*map(_recorded, members.items()), f"{record},,\n"]).encode()
+    return f"{name}-{tag}.whl", _zipped(members)
+
+
+def _recorded(member: tuple[str, bytes]) -> str:
+    """Return the line of a file in the record of a wheel: its path, hash and size."""
+    path, content = member
+    digest = urlsafe_b64encode(hashlib.sha256(content).digest()).decode().rstrip("=")
+    return f"{path},sha256={digest},{len(content)}\n"
+
+
+def _kept(folders: Iterable[str]) -> dict[str, bytes]:
+    """Return the files in folders of the cache, by their paths in it."""
+    return {
+        f"{folder}/{path.name}": path.read_bytes()
+        for folder in sorted(folders)
+        for path in sorted(place_of(folder).glob("*.nb[ic]"))
+    }
+
+
+def _zipped(members: Mapping[str, bytes]) -> bytes:
+    buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
-        archive.writestr(_MANIFEST, json.dumps(document, indent=1))
-        for name, content in files.items():
+        for name, content in members.items():
             archive.writestr(name, content)
     return buffer.getvalue()
 

@@ -52,6 +52,8 @@ if numba.core.config.DISABLE_JIT:  # type: ignore[attr-defined]
     )
 VARIABLE = "PHYSICSLAB_KERNELS"
 """The environment variable that says where compiled kernels are to be kept."""
+SHARED = "share/physicslab/kernels"
+"""The folder of kernels that are only read, below ``sys.prefix``."""
 _DAY = 86400.0
 _UNUSED = 30 * _DAY
 """Time [s] for which what is not used is kept."""
@@ -145,7 +147,7 @@ def _resolved(place: Path, name: str) -> Path | None:
 
 def _first_shared() -> Path | None:
     """Return the folder of kernels that are only read, if there is one with all of them."""
-    places = [Path(sys.prefix, "share", "physicslab", "kernels")]
+    places = [Path(sys.prefix, SHARED)]
     named = os.environ.get(VARIABLE, "")
     if named and not os.access(named, os.W_OK | os.X_OK):
         places.insert(0, Path(os.path.abspath(named)))
