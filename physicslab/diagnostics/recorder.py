@@ -80,7 +80,7 @@ def _recorded(
     """Make a whole run; the world ends with the bits of :meth:`World.run`."""
     finest = 1 if world.schedule.samplers else stride
     world.samples = samples = Samples(world, world.time, length.dt, finest, length.steps)
-    for _ in strides_as_it_goes(world, length.seconds, None, lambda: _stride(world), math.inf):
+    for _ in strides_as_it_goes(world, length, lambda: _stride(world), math.inf):
         records += reader.read()
     if reader.lost:
         _log.warning("record: %d impacts were not kept, more than the log holds", reader.lost)

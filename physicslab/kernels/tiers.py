@@ -169,10 +169,10 @@ class FirstRuns(Tiers):
     def __init__(self) -> None:
         super().__init__(True)
         self._told = False
-        self.small = True
+        self.is_small: Callable[[], bool] = lambda: True
 
     def _ask(self, missing: Sequence[Any]) -> Sequence[Any]:
-        if self.small:
+        if self.is_small():
             absent = super()._ask(missing)
             if absent and not self._told:
                 self._told = True
@@ -226,7 +226,7 @@ def begin_run(is_small: Callable[[], bool]) -> FirstRuns | None:
         _first_runs.__enter__()
     if _first_runs is None or not _first_runs.decides:
         return None
-    _first_runs.small = is_small()
+    _first_runs.is_small = is_small
     return _first_runs
 
 

@@ -14,13 +14,12 @@ from physicslab.contacts.kept import KeptContacts, carry_sleep
 from physicslab.ecs.component import Component
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.context import create_numbered
-from physicslab.ecs.table import Table
+from physicslab.ecs.table import Table, as_slice
 from physicslab.kernels import near_counts
 from physicslab.kernels.clock import time_after
 from physicslab.state.remainders import Remainders, coordinate_keys
 from physicslab.state.state import State
 from physicslab.stepping.breaks import Overloaded
-from physicslab.stepping.flow import Flow
 from physicslab.stepping.partition import MAX_BODIES, movable_in
 from physicslab.stepping.plan import StepPlan
 from physicslab.stepping.planning import choose_plan, outlived
@@ -77,6 +76,7 @@ class Island:
         self.state: State = world
         self.entities = entities
         self.own = self.there = self.shaped = self.every = self.every_there = np.zeros(0, np.int64)
+        self._slices: tuple[Any, Any] = self.own, self.there
 
     @property
     def touches(self) -> bool:
@@ -87,6 +87,7 @@ class Island:
         """Find its rows again in the whole world."""
         index, self.state.joints.watched = self.state.entity_index, state.joints.watched
         self.own, self.there = index.rows_of(self.entities), state.entity_index.rows_of(self.entities)
+        self._slices = as_slice(self.own), as_slice(self.there)
         self.every = np.flatnonzero(index.entities)
         self.every_there = state.entity_index.rows_of(index.entities[self.every])
         self.shaped = self.there[self.state.table(Shape).present[self.own]]
@@ -129,7 +130,7 @@ class Island:
             while done < steps:
                 self.world.synchronise()
                 # Smooth motion depends on where it is divided, and that on what else there is.
-                single = self.touches and isinstance(self.world.stepper_for(h), Flow)
+                single = self.touches and self.world.stepper_for(h).leaps
                 try:
                     made = self.world.advance(h, 1 if single else steps - done)
                     done, own.time = done + made, time_after(own.time, h, made)
@@ -151,20 +152,20 @@ class Island:
 
     def _with(self, state: State, driven: Rows) -> tuple[Rows, Rows]:
         """Return its bodies' and ``driven`` rows, in its world and in the whole one."""
-        if not len(driven):
-            return self.own, self.there
         entities = state.entity_index.entities[driven]
         own = np.concatenate((self.own, self.state.entity_index.rows_of(entities)))
         return own, np.concatenate((self.there, driven))
 
     def write_back(self, state: State, driven: Rows) -> None:
         """Write how its bodies move, and which sleep, to the whole world, and so ``driven`` rows of that."""
-        own, there = self._with(state, driven)
+        own, there = self._with(state, driven) if len(driven) else self._slices
         for column, part in zip(motion_of(state), motion_of(self.state), strict=True):
             column[there] = part[own]
         if self.state.sleep.on:
-            for name in ("asleep", "rest", "slowest"):
-                getattr(state.sleep, name)[self.there] = getattr(self.state.sleep, name)[self.own]
+            own, there = self._slices
+            whole, part = state.sleep, self.state.sleep
+            whole.asleep[there], whole.rest[there] = part.asleep[own], part.rest[own]
+            whole.slowest[there] = part.slowest[own]
 
 
 def in_order(members: Iterable[Island]) -> tuple[Island, ...]:
@@ -293,8 +294,8 @@ def rows_changed(numbers: Sequence[NDArray[Any]], left: bytes) -> NDArray[np.boo
 
 def join_logs(state: State, parts: list[State], logged: list[int]) -> None:
     """Add the impacts of all parts, from numbers ``logged`` on, to the log of the whole, in order of time."""
-    new = [part.contacts.impacts_since(first) for part, first in zip(parts, logged, strict=True)]
-    if any(map(len, new)):
+    if [part.contacts.logged for part in parts] != logged:
+        new = [part.contacts.impacts_since(first) for part, first in zip(parts, logged, strict=True)]
         log, first = state.contacts.log, state.contacts.logged
         impacts = np.concatenate(new)
         impacts = impacts[np.argsort(impacts["time"], kind="stable")][-len(log) :]

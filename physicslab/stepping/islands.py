@@ -8,7 +8,7 @@ of an island are those that it has alone.
 
 import math
 import weakref
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -183,7 +183,7 @@ class Islands:
                 parts = max(parts, *(island.state.step_divisions for island in self.members))
                 join_logs(state, [island.state for island in touching], logged)
                 made, state.time = made + count, time_after(state.time, h, count)
-                self._write_back(state)
+                self._write_back(state, driven)
                 if made < steps:
                     if not self._join_near(state, h):
                         self._examine(state)
@@ -221,9 +221,8 @@ class Islands:
         moves = state.table(Transform).present & state.table(Velocity).present
         return {self.members[0]: np.flatnonzero(moves & ~partition.movable_in(state))}
 
-    def _write_back(self, state: State) -> None:
-        """Write the motion of all islands into the whole world."""
-        driven = self._driven(state)
+    def _write_back(self, state: State, driven: Mapping[Island, Rows]) -> None:
+        """Write the motion of all islands, and of what no force moves, into the whole world."""
         for island in self.members:
             island.write_back(state, driven.get(island, _NONE))
             copy_joints(island.state, state)
@@ -302,7 +301,7 @@ class Islands:
         self._comes_apart = any(island.touches for island in self.members)
         # The last digits of smooth motion depend on where it is divided.
         self.divisible, self.apart_until = all(island.touches for island in self.members), -math.inf
-        self._write_back(state)
+        self._write_back(state, self._driven(state))
 
     def _examine(self, state: State) -> bool:
         """Divide islands that have come apart, where it is time to look; return whether any were."""

@@ -47,12 +47,15 @@ class RunLength:
         How many of those there are.
     rest : float
         The length of one more, shorter or a little longer, step [s]; 0 where there is none.
+    is_time : bool
+        Whether it is the time that was given, after which the clock shows exactly that much more.
     """
 
     seconds: float
     dt: float
     whole: int
     rest: float
+    is_time: bool
 
     @property
     def steps(self) -> int:
@@ -113,9 +116,9 @@ def run_length(world: Stepped, seconds: float | None, steps: int | None) -> RunL
         count: int = _STEPS.check(steps)
         if not math.isfinite(world.time + count * dt):
             raise InvalidValue("run", "steps", steps, f"so few that {dt!r} s each lead to a finite time")
-        return RunLength(count * dt, dt, count, 0.0)
+        return RunLength(count * dt, dt, count, 0.0, False)
     seconds = _SECONDS.check(seconds)
-    return RunLength(seconds, dt, *_whole_steps(seconds, dt))
+    return RunLength(seconds, dt, *_whole_steps(seconds, dt), True)
 
 
 def _whole_steps(seconds: float, dt: float) -> tuple[int, float]:
@@ -164,20 +167,19 @@ def strides(
     world: Stepped, seconds: float | None, steps: int | None, stride: int, patience: float
 ) -> Iterator[int]:
     """Return what advances by a time or a number of steps, and yields as :meth:`World.stepping` says."""
-    run_length(world, seconds, steps)
-    checked = _STRIDE.check(stride)
-    return strides_as_it_goes(world, seconds, steps, lambda: checked, patience)
+    length, checked = run_length(world, seconds, steps), _STRIDE.check(stride)
+    return strides_as_it_goes(world, length, lambda: checked, patience)
 
 
 def strides_as_it_goes(
-    world: Stepped, seconds: float | None, steps: int | None, stride: Callable[[], int], patience: float
+    world: Stepped, length: RunLength, stride: Callable[[], int], patience: float
 ) -> Iterator[int]:
     """Return the same; ``stride`` gives, for the world as it is, the steps between two yields."""
     assert isinstance(world, State)
     first = begin_run(lambda: is_small(world))
     due, divided = time.monotonic() + patience, first is not None or patience < math.inf
     at_once = 1 if divided else sys.maxsize
-    length, start, done = run_length(world, seconds, steps), world.time, 0
+    start, done = world.time, 0
     if not length.steps:
         world.time += length.seconds  # which is nothing, or too short for anything to move
     while done < length.steps:
@@ -189,7 +191,7 @@ def strides_as_it_goes(
             world.time = time_after(clock, length.dt, world.steps - before)
             raise
         done += made
-        exactly = seconds is not None and done == length.steps
+        exactly = length.is_time and done == length.steps
         world.time = start + length.seconds if exactly else time_after(world.time, length.dt, made)
         if first is not None:
             first.foresee(done / length.steps)
