@@ -27,7 +27,7 @@ from physicslab.stepping.planning import plan_for_jumps
 from physicslab.stepping.repeat import Repeat
 from physicslab.stepping.run import refuse_unnamed, run_through, strides
 from physicslab.stepping.select import Steppers, choose, remake, restart, resume, settle
-from physicslab.stepping.small import is_small
+from physicslab.stepping.small import smallness_of
 from physicslab.stepping.soft import Soft
 from physicslab.stepping.stepper import Advance, Advancer
 from physicslab.stepping.undo import StepTransaction, go_back
@@ -126,7 +126,7 @@ class World(Facade):
         """
         h = self.simulation.dt if dt is None else _STEP.check(dt)
         if not self.steps:
-            begin_run(lambda: is_small(self))
+            begin_run(smallness_of(self))
         with self.active():
             self._follow(numbers=True)
             self.advance(h, 1)

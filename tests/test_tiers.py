@@ -218,7 +218,7 @@ def test_a_large_scene_is_compiled_first_and_that_is_announced(
     try:
         assert list(runs._ask((soft.advance,))) == []
         assert re.fullmatch(r"compiling advance, once: about \d+ s", caplog.messages[-1])
-        runs.small = True
+        runs.is_small = lambda: True
         assert list(runs._ask((soft.advance,))) == [soft.advance]
         assert len(caplog.messages) == 2
         with Tiers(True):

@@ -17,7 +17,7 @@ from physicslab.state.masses import Diverged, quiet
 from physicslab.state.samples import Samples, moving_rows
 from physicslab.state.state import State
 from physicslab.stepping.flow import Flow
-from physicslab.stepping.small import is_small
+from physicslab.stepping.small import smallness_of
 from physicslab.stepping.stepper import Advancer
 from physicslab.systems.schedule import Schedule
 
@@ -176,7 +176,7 @@ def strides_as_it_goes(
 ) -> Iterator[int]:
     """Return the same; ``stride`` gives, for the world as it is, the steps between two yields."""
     assert isinstance(world, State)
-    first = begin_run(lambda: is_small(world))
+    first = begin_run(smallness_of(world))
     due, divided = time.monotonic() + patience, first is not None or patience < math.inf
     at_once = 1 if divided else sys.maxsize
     start, done = world.time, 0

@@ -1,5 +1,7 @@
 """Which worlds are so small that kernels can be interpreted for them, until they are compiled."""
 
+import weakref
+from collections.abc import Callable
 from itertools import islice
 
 import esper
@@ -10,6 +12,12 @@ _ENTITY_LIMIT = 40
 """So many entities a small world has at most: forty boxes in a heap take 30 ms a step, ten bodies on ten
 springs 16, alone on a core. Where bodies attract each other each counts twice: twenty take 26 ms, forty
 300."""
+
+
+def smallness_of(state: State) -> Callable[[], bool]:
+    """Return what tells that of a world by the time it is called, and does not keep the world."""
+    kept = weakref.ref(state)
+    return lambda: (there := kept()) is None or is_small(there)
 
 
 def is_small(state: State) -> bool:
