@@ -6,6 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Trail, Transform
+from physicslab.kernels import direct_entry
+from physicslab.kernels.trails import note_places
 from physicslab.state.samples import ends_of_steps
 from physicslab.state.state import State
 from physicslab.systems.system import Stage, System, at
@@ -52,6 +54,8 @@ class TrailSystem(System):
         self.entities, self._rows = batch.entities, batch.rows
         self._place, self._time, self._head = place, time, head
         self._length = state.table(Trail)["length"][batch.rows]
+        if len(batch):
+            state.compile((note_places,))
 
     def keep(self) -> tuple[NDArray[Any], ...]:
         """Return copies of the record."""
@@ -73,18 +77,11 @@ class TrailSystem(System):
             self._now = state.time
         self._length = state.table(Trail)["length"][self._rows]
         ends = ends_of_steps(state.samples, state, self._rows, self._now, now, h)
-        for time, motion in zip(ends.times.tolist(), ends.motion, strict=True):
-            self._note(time, motion[:, :2])
-
-    def _note(self, now: float, places: NDArray[np.float64]) -> None:
-        """Note the ``places`` [m] (n, 2) at a time [s]."""
-        self._now, every = now, np.arange(len(self._rows))
-        newest, before = self._time[every, self._head], self._time[every, self._head - 1]
-        gap = (1.0 - 1e-9) * self._length / (SAMPLES - 2)
-        due = (newest - before >= gap) | (np.isfinite(newest) & np.isnan(before))
-        self._head[due] = (self._head[due] + 1) % SAMPLES
-        self._place[every, self._head] = places
-        self._time[every, self._head] = now
+        if len(ends.times):
+            self._now = float(ends.times[-1])
+            motion = np.ascontiguousarray(ends.motion.reshape(-1, ends.motion.shape[2]))
+            place = self._place.reshape(-1, 2)
+            direct_entry(note_places)(ends.times, motion, self._length, self._head, self._time, place)
 
     def paths(self, every: int = 1) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Return every path, in the order of ``entities``, and how old each part of it is.
