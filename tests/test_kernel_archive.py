@@ -323,7 +323,7 @@ def test_a_wheel_is_installed_where_kernels_are_looked_for(
     ("arguments", "reason"),
     [
         (["wheel"], "FILE is missing"),
-        (["wheel", "nowhere"], "cannot be written"),
+        (["wheel", "nowhere"], "must be a folder that is there"),
         (["--cpu", "x86-64-v2", "import", "kernels.zip"], "must go with export or wheel"),
         (["export"], "FILE is missing"),
         (["import"], "FILE is missing"),

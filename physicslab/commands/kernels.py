@@ -69,7 +69,8 @@ def _export(output: Output) -> int:
 
 def _wheel(folder: Path) -> int:
     """Write a wheel into a folder, by the name that installers go by."""
-    Output("kernels wheel", str(folder / "wheel"))  # before anything is compiled
+    if not folder.is_dir():  # before anything is compiled
+        raise CommandError(f"kernels wheel {printable(str(folder))}: must be a folder that is there")
     _fill()
     name, content = wheel(physicslab.__version__)
     _write(Output("kernels wheel", str(folder / name)), content)
