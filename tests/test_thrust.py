@@ -8,6 +8,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from physicslab import World, load_scene, save_scene
 from physicslab.components import Mass, Shape, Spring, Thrust, Transform, Velocity
@@ -16,6 +18,7 @@ from physicslab.ecs.component import InvalidValue
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.files.writer import write_scene
 from physicslab.integrators import INTEGRATORS
+from physicslab.kernels.clock import time_after
 from physicslab.lab.accuracy.catalogue import PROBLEMS
 from physicslab.prefabs import box
 from physicslab.stepping.rigid import Rigid
@@ -198,3 +201,15 @@ def test_methods_of_fixed_steps_have_one_clock(integrator: str) -> None:
     ran.run(steps=47)
     assert stepped.time == ran.time == 47 * (1.0 / 7.0)
     assert write_scene(stepped) == write_scene(ran)
+
+
+@given(
+    start=st.one_of(st.floats(-2.0, 500.0), st.integers(0, 10**6).map(lambda n: n / 60)),
+    dt=st.sampled_from([1 / 60, 0.01, 1 / 7, 1e-3]), steps=st.sampled_from([0, 1, 2, 9, 4096, 4100]),
+)  # fmt: skip
+@settings(max_examples=30)
+def test_many_steps_of_the_clock_are_those_made_one_by_one(start: float, dt: float, steps: int) -> None:
+    time = start
+    for _ in range(steps):
+        time = time_after(time, dt)
+    assert time_after(start, dt, steps) == time
