@@ -17,7 +17,6 @@ from physicslab.kernels import direct_entry
 from physicslab.kernels.accounts import CONTACT, FRICTION, HAND, JOINTS, MOTORS
 from physicslab.kernels.broad import near_pairs
 from physicslab.kernels.clock import time_after
-from physicslab.kernels.joints.rows import forces_of
 from physicslab.kernels.rigid import features as F
 from physicslab.kernels.rigid import joined, step
 from physicslab.kernels.rigid.features import PAIR
@@ -286,7 +285,7 @@ class Rigid(Stepper):
         if len(joints):
             ode.find_joint_forces(state)
             joined.find_answer(scene, made.points, made.measures, made.forces, made.closed, ode.q, ode.v)
-            joints.force += forces_of(*ode.joints, len(joints))
+            ode.add_joint_forces(state)
             contacts = len(self._pairs) - len(self._rows)
             for i in range(made.closed):
                 number = int(made.points[i, PAIR]) - contacts
