@@ -211,7 +211,8 @@ class Rigid(Stepper):
             moment = at + part * h / parts
             q[clock], v[clock] = moment, 1.0  # the clock goes by one second a second
             step = self._motion.step(scene, state, moment, h / parts)
-            if self._ode.hold_together() and not (step.refused or step.by_impulses):
+            together = self._ode.hold_together()
+            if not (step.refused or step.by_impulses) and self._ode.was_apart(together):
                 step.refused = sentence("contradiction")
             state.force_evaluations += step.evaluations
             self.energetic_impacts += step.energetic
