@@ -110,11 +110,10 @@ def test_the_rows_add_up_to_the_account_where_resting_bodies_pass_an_impact_on(s
     top = 0.0
     for _ in range(3):
         width, height, x = random.uniform((0.6, 0.2, -0.05), (1.0, 0.5, 0.05)).tolist()
-        material = {
-            "restitution": float(random.choice((0.0, 0.3))),
-            "friction": float(random.uniform(0, 0.8)),
-        }
-        box(world, (x, top + 0.5 * height), width=width, height=height, mass=5 * height, **material)
+        box(
+            world, (x, top + 0.5 * height), width=width, height=height, mass=5 * height,
+            restitution=float(random.choice((0.0, 0.3))), friction=float(random.uniform(0.0, 0.8)),
+        )  # fmt: skip
         top += height
     place = float(random.uniform(-0.3, 0.3)), top + 0.6
     circle(world, place, radius=0.2, velocity=(0.5, -3.0), restitution=0.5, friction=0.4)
