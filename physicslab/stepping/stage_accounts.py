@@ -90,7 +90,7 @@ class StageAccounts:
         """Note the pull of a force that is booked by itself; ``before`` (3 rows,) is that of those before."""
         if system in self._pulls:
             np.subtract(state.bodies.pull, before, out=self._pulls[system])
-        elif self._damps and isinstance(system, SpringSystem):
+        if self._damps and isinstance(system, SpringSystem):
             self._dampers = _pull_of_dampers(state)
 
     def book_causes(self, state: State, h: float) -> None:
