@@ -120,7 +120,7 @@ class SplitPart:
             )  # fmt: skip
 
     def _follow(self, state: State, h: float) -> int:
-        """Advance by the method: where springs turn too fast for their flow, by one that chooses its steps."""
+        """Advance by the method: that of springs which turn too fast for their flow chooses its steps."""
         ode = self.ode
         if self.springs is None:
             ode.gather_state(state)
