@@ -187,7 +187,8 @@ class StageAccounts:
         moved = (bodies.awake_inverse_mass > 0.0) & of
         rows = np.concatenate((np.repeat(moved, 2), moved & (bodies.awake_inverse_inertia > 0.0)))
         worked = [(force.account, float(self._pulls[force][rows] @ way[rows])) for force in self._free]
-        if self._damps:
+        if self._damps:  # at an end that is driven, too: what drives it works against the damper
+            rows = np.concatenate((np.repeat(of, 2), of))
             worked.append((DAMPING, float(self._dampers[rows] @ way[rows])))
         for account, energy in worked:
             # Damping gives no energy: what a kick gives that overshoots is an error of the method.
