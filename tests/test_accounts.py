@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from recording import RecordingCanvas
 
 from physicslab.cli import main
-from physicslab.components import Drag, Held, Mass, Material, Shape, Transform, Velocity
+from physicslab.components import Charge, Drag, Held, Mass, Material, Shape, Spring, Transform, Velocity
 from physicslab.components.quantities import ENERGY_CAUSES, MOMENTUM_CAUSES, UNMEASURED_MOMENTA
 from physicslab.diagnostics.energy import ENERGY_ACCOUNTS, MOMENTUM_ACCOUNTS, Accounts, Audit, measure_account
 from physicslab.diagnostics.quantities import Reading
@@ -383,6 +383,39 @@ def test_what_a_damper_takes_is_damping() -> None:
     account = measure_account(world)
     assert account.energy["damping"] < -1e-3
     assert abs(account.energy["numerical"]) < 1e-6 * abs(account.energy["damping"])
+
+
+@pytest.mark.parametrize("coulomb", [0.0, 0.5])
+@pytest.mark.parametrize("gravity", ["none", "planet"])
+def test_what_a_damper_takes_is_damping_where_other_forces_kick_too(gravity: str, coulomb: float) -> None:
+    world = empty_world(gravity=(0.0, 0.0))
+    world.physics = dataclasses.replace(world.physics, gravity_mode=gravity, coulomb_constant=coulomb)
+    with_simulation(world, integrator="leapfrog", contacts="soft", dt=1 / 960)
+    left, right = circle(world, (0, 0), radius=0.2), circle(world, (2, 0), radius=0.2, velocity=(1, 1))
+    for disc in (left, right):
+        world.add(disc, Charge(1.0))
+    world.spawn(Spring(a=left, b=right, rest_length=1.5, stiffness=20.0, damping=2.0))
+    world.run(seconds=1.0)
+    account = measure_account(world)
+    assert account.energy["damping"] < -1.0
+    assert abs(account.energy["numerical"]) < 1e-3 * abs(account.energy["damping"])
+
+
+@pytest.mark.parametrize("integrator", ["auto", "leapfrog"])
+@pytest.mark.parametrize("speed", [(0.0, 0.0), (2.0, 0.0), (-0.5, 0.3)])
+def test_a_damper_at_a_driven_plate_takes_what_its_drive_gives_too(
+    integrator: str, speed: tuple[float, float]
+) -> None:
+    world = with_simulation(
+        empty_world(gravity=(0.0, 0.0)), integrator=integrator, contacts="soft", dt=1 / 960
+    )
+    disc = circle(world, (1, 0), radius=0.2, mass=2.0, velocity=(0.0, 0.3), restitution=0.5)
+    plate = world.spawn(Transform((0, 0)), Velocity(speed, 0.3), Shape.box(0.4, 0.4), Material(0.5))
+    world.spawn(Spring(a=disc, b=plate, rest_length=0.5, stiffness=20.0, damping=2.0))
+    world.run(seconds=0.4)
+    account = measure_account(world)
+    assert account.energy["damping"] < -0.1
+    assert abs(account.energy["numerical"]) < 1e-3 * abs(account.energy["damping"])
 
 
 def test_at_its_terminal_speed_a_body_gives_all_its_weight_does_to_drag() -> None:

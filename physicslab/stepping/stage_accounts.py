@@ -90,7 +90,7 @@ class StageAccounts:
         """Note the pull of a force that is booked by itself; ``before`` (3 rows,) is that of those before."""
         if system in self._pulls:
             np.subtract(state.bodies.pull, before, out=self._pulls[system])
-        elif self._damps and isinstance(system, SpringSystem):
+        if self._damps and isinstance(system, SpringSystem):
             self._dampers = _pull_of_dampers(state)
 
     def book_causes(self, state: State, h: float) -> None:
@@ -187,7 +187,8 @@ class StageAccounts:
         moved = (bodies.awake_inverse_mass > 0.0) & of
         rows = np.concatenate((np.repeat(moved, 2), moved & (bodies.awake_inverse_inertia > 0.0)))
         worked = [(force.account, float(self._pulls[force][rows] @ way[rows])) for force in self._free]
-        if self._damps:
+        if self._damps:  # at an end that is driven, too: what drives it works against the damper
+            rows = np.concatenate((np.repeat(of, 2), of))
             worked.append((DAMPING, float(self._dampers[rows] @ way[rows])))
         for account, energy in worked:
             # Damping gives no energy: what a kick gives that overshoots is an error of the method.
