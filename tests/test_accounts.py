@@ -16,7 +16,18 @@ from hypothesis import strategies as st
 from recording import RecordingCanvas
 
 from physicslab.cli import main
-from physicslab.components import Charge, Drag, Held, Mass, Material, Shape, Spring, Transform, Velocity
+from physicslab.components import (
+    Charge,
+    Drag,
+    Held,
+    Mass,
+    Material,
+    Medium,
+    Shape,
+    Spring,
+    Transform,
+    Velocity,
+)
 from physicslab.components.quantities import ENERGY_CAUSES, MOMENTUM_CAUSES, UNMEASURED_MOMENTA
 from physicslab.diagnostics.energy import ENERGY_ACCOUNTS, MOMENTUM_ACCOUNTS, Accounts, Audit, measure_account
 from physicslab.diagnostics.quantities import Reading
@@ -416,6 +427,26 @@ def test_a_damper_at_a_driven_plate_takes_what_its_drive_gives_too(
     account = measure_account(world)
     assert account.energy["damping"] < -0.1
     assert abs(account.energy["numerical"]) < 1e-3 * abs(account.energy["damping"])
+
+
+@pytest.mark.parametrize("cause", ["fields", "damping"])
+def test_what_a_pool_gives_and_takes_by_kicks_is_that_of_fields_and_of_damping(cause: str) -> None:
+    """A box comes in by a side wall, where the pressure of the fluid works; drag is of the first order."""
+    errors = []
+    for dt in (1 / 120, 1 / 480):
+        world = with_simulation(empty_world(), integrator="leapfrog", contacts="soft", dt=dt)
+        drag = 20.0 if cause == "damping" else 0.0
+        world.spawn(
+            Transform((3, -1)), Shape.box(4.0, 4.0), Medium(density=50.0, viscosity=drag, flow=(0.5, 0.0))
+        )
+        box(world, (0, 0), width=0.6, height=0.4, mass=10.0, velocity=(2.0, 0.0), angle=0.3)
+        circle(world, (-2, 0))
+        world.run(seconds=0.7)
+        account = measure_account(world)
+        assert abs(account.energy[cause]) > 1.0
+        errors.append(abs(account.energy["numerical"]))
+    assert errors[0] < 0.03 * abs(account.energy[cause])
+    assert errors[1] < 0.35 * errors[0]
 
 
 def test_at_its_terminal_speed_a_body_gives_all_its_weight_does_to_drag() -> None:
