@@ -16,7 +16,18 @@ from hypothesis import strategies as st
 from recording import RecordingCanvas
 
 from physicslab.cli import main
-from physicslab.components import Drag, Held, Mass, Material, Shape, Transform, Velocity
+from physicslab.components import (
+    Charge,
+    Drag,
+    Held,
+    Mass,
+    Material,
+    Medium,
+    Shape,
+    Spring,
+    Transform,
+    Velocity,
+)
 from physicslab.components.quantities import ENERGY_CAUSES, MOMENTUM_CAUSES, UNMEASURED_MOMENTA
 from physicslab.diagnostics.energy import ENERGY_ACCOUNTS, MOMENTUM_ACCOUNTS, Accounts, Audit, measure_account
 from physicslab.diagnostics.quantities import Reading
@@ -383,6 +394,75 @@ def test_what_a_damper_takes_is_damping() -> None:
     account = measure_account(world)
     assert account.energy["damping"] < -1e-3
     assert abs(account.energy["numerical"]) < 1e-6 * abs(account.energy["damping"])
+
+
+@pytest.mark.parametrize("coulomb", [0.0, 0.5])
+@pytest.mark.parametrize("gravity", ["none", "planet"])
+def test_what_a_damper_takes_is_damping_where_other_forces_kick_too(gravity: str, coulomb: float) -> None:
+    world = empty_world(gravity=(0.0, 0.0))
+    world.physics = dataclasses.replace(world.physics, gravity_mode=gravity, coulomb_constant=coulomb)
+    with_simulation(world, integrator="leapfrog", contacts="soft", dt=1 / 960)
+    left, right = circle(world, (0, 0), radius=0.2), circle(world, (2, 0), radius=0.2, velocity=(1, 1))
+    for disc in (left, right):
+        world.add(disc, Charge(1.0))
+    world.spawn(Spring(a=left, b=right, rest_length=1.5, stiffness=20.0, damping=2.0))
+    world.run(seconds=1.0)
+    account = measure_account(world)
+    assert account.energy["damping"] < -1.0
+    assert abs(account.energy["numerical"]) < 1e-3 * abs(account.energy["damping"])
+
+
+@pytest.mark.parametrize("integrator", ["auto", "leapfrog"])
+@pytest.mark.parametrize("speed", [(0.0, 0.0), (2.0, 0.0), (-0.5, 0.3)])
+def test_a_damper_at_a_driven_plate_takes_what_its_drive_gives_too(
+    integrator: str, speed: tuple[float, float]
+) -> None:
+    world = with_simulation(
+        empty_world(gravity=(0.0, 0.0)), integrator=integrator, contacts="soft", dt=1 / 960
+    )
+    disc = circle(world, (1, 0), radius=0.2, mass=2.0, velocity=(0.0, 0.3), restitution=0.5)
+    plate = world.spawn(Transform((0, 0)), Velocity(speed, 0.3), Shape.box(0.4, 0.4), Material(0.5))
+    world.spawn(Spring(a=disc, b=plate, rest_length=0.5, stiffness=20.0, damping=2.0))
+    world.run(seconds=0.4)
+    account = measure_account(world)
+    assert account.energy["damping"] < -0.1
+    assert abs(account.energy["numerical"]) < 1e-3 * abs(account.energy["damping"])
+
+
+@pytest.mark.parametrize("damping", [0.0, 2.0])
+def test_what_turns_a_point_mass_on_against_a_spring_is_driven(damping: float) -> None:
+    """A body without a Shape turns steadily: what keeps it so works against a spring beside its middle."""
+    world = with_simulation(empty_world(), integrator="leapfrog", contacts="soft", dt=1 / 480)
+    point = world.spawn(Transform((0, 0)), Velocity((1.0, 0.0), 5.0), Mass(2.0))
+    disc = circle(world, (1, 1), radius=0.2)
+    circle(world, (3, 1), radius=0.2)
+    world.spawn(
+        Spring(a=point, b=disc, anchor_a=(0.3, 0.0), rest_length=0.5, stiffness=20.0, damping=damping)
+    )
+    world.run(seconds=1.0)
+    account = measure_account(world)
+    assert abs(account.energy["hand"]) > 0.5
+    assert abs(account.energy["numerical"]) < 2e-3 * abs(account.energy["hand"])
+
+
+@pytest.mark.parametrize("cause", ["fields", "damping"])
+def test_what_a_pool_gives_and_takes_by_kicks_is_that_of_fields_and_of_damping(cause: str) -> None:
+    """A box comes in by a side wall, where the pressure of the fluid works; drag is of the first order."""
+    errors = []
+    for dt in (1 / 120, 1 / 480):
+        world = with_simulation(empty_world(), integrator="leapfrog", contacts="soft", dt=dt)
+        drag = 20.0 if cause == "damping" else 0.0
+        world.spawn(
+            Transform((3, -1)), Shape.box(4.0, 4.0), Medium(density=50.0, viscosity=drag, flow=(0.5, 0.0))
+        )
+        box(world, (0, 0), width=0.6, height=0.4, mass=10.0, velocity=(2.0, 0.0), angle=0.3)
+        circle(world, (-2, 0))
+        world.run(seconds=0.7)
+        account = measure_account(world)
+        assert abs(account.energy[cause]) > 1.0
+        errors.append(abs(account.energy["numerical"]))
+    assert errors[0] < 0.03 * abs(account.energy[cause])
+    assert errors[1] < 0.35 * errors[0]
 
 
 def test_at_its_terminal_speed_a_body_gives_all_its_weight_does_to_drag() -> None:

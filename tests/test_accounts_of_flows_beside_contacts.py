@@ -172,3 +172,25 @@ def test_each_spring_on_a_body_that_moves_at_a_given_speed_is_work_of_what_moves
     assert any(isinstance(part.stepper, Soft) for part in world.parts)
     assert account.energy["hand"] > 1.0
     assert abs(account.energy["numerical"]) < 1e-3 * account.energy["hand"]
+
+
+@pytest.mark.parametrize("staged", [False, True])
+@pytest.mark.parametrize("damping", [0.5, 2.0])
+def test_a_damper_beside_a_spring_too_short_for_the_flow_takes_what_it_takes(
+    staged: bool, damping: float
+) -> None:
+    """A spring between points of welded bodies that are one has no direction, which turns as it may."""
+    left, right, hung = (
+        {"id": name, **body(x, y), "Shape": {"kind": "circle", "radius": 0.1}}
+        for name, x, y in (("left", -0.4, 0.0), ("right", 0.4, 0.0), ("hung", 0.0, 3.0))
+    )
+    weld = {"Weld": {"a": "left", "b": "right", "anchor_a": [0.4, 0.0], "anchor_b": [-0.4, 0.0]}}
+    short = {"a": "left", "b": "right", "anchor_a": [0.4, 0.1], "anchor_b": [-0.4, 0.1]}
+    damper = {"Spring": {"a": "left", "b": "hung", "rest_length": 2.0, "stiffness": 40.0, "damping": damping}}
+    document = scene(
+        left, right, hung, weld, damper, {"Spring": {**short, "rest_length": 0.2, "stiffness": 100.0}}
+    )
+    document["simulation"]["dt"] = 1 / 240
+    _, account = after(document, 60, *[LooksAtSolving()] * staged)
+    assert account.energy["damping"] < -0.5
+    assert share(account) < FLOWN

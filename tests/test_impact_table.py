@@ -101,6 +101,35 @@ def test_momentum_of_the_rows_adds_up_to_that_of_the_world(way: str, shapes: str
         assert outer_impulses(records)[2] == pytest.approx(change[2], abs=1e-9 * scale)
 
 
+@pytest.mark.parametrize("seed", range(12))
+def test_the_rows_add_up_to_the_account_where_resting_bodies_pass_an_impact_on(seed: int) -> None:
+    """A ball falls on a stack: what the bodies below and the floor take has rows as well."""
+    random = np.random.default_rng(seed)
+    world = World(*standard_systems(), simulation=SimulationConfig(sleeping=False, **WAYS["rigid"]))
+    box(world, (0, -0.5), width=20, height=1, static=True, restitution=1.0, friction=0.5)
+    top = 0.0
+    for _ in range(3):
+        width, height, x = random.uniform((0.6, 0.2, -0.05), (1.0, 0.5, 0.05)).tolist()
+        box(
+            world, (x, top + 0.5 * height), width=width, height=height, mass=5 * height,
+            restitution=float(random.choice((0.0, 0.3))), friction=float(random.uniform(0.0, 0.8)),
+        )  # fmt: skip
+        top += height
+    place = float(random.uniform(-0.3, 0.3)), top + 0.6
+    circle(world, place, radius=0.2, velocity=(0.5, -3.0), restitution=0.5, friction=0.4)
+    world.contacts.read = True
+    world.run(seconds=0.15)
+    records, account = world.contacts.impacts, measure_account(world)
+    found = read_impacts(records)
+    assert len(records) == world.collisions >= 4  # the three below take part
+    assert -found.energy_lost.sum() == pytest.approx(account.energy["impacts"], rel=1e-12)
+    floor = records["inverse_mass_a"] == 0.0
+    assert (records["normal_impulse"] * records["normal_y"])[floor].sum() == pytest.approx(
+        account.momentum["impacts"].y, rel=1e-9
+    )
+    assert np.nanmin(found.e_found) > -1e-6 and np.nanmax(found.e_found) < 1.0 + 1e-9
+
+
 @pytest.mark.parametrize("way", WAYS)
 def test_records_hold_the_motion_before_and_after(way: str) -> None:
     """The change of each velocity is what the impulses cause; law, restitution and friction are there."""

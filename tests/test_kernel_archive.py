@@ -346,7 +346,8 @@ def test_bad_usage_is_one_line(
 
 def test_what_does_not_fit_ends_with_2(root: Path, packed: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert cli.main(["kernels", "import", str(changed(packed, other_sources))]) == 2
-    assert "does not fit" in capsys.readouterr().err
+    said = capsys.readouterr().err
+    assert "does not fit" in said and said.count("\n") == 1
 
 
 def test_alone_it_says_where_kernels_are(

@@ -81,6 +81,23 @@ def test_what_values_may_be(text: str, kind: type[Component], name: str, value: 
     assert (tuple(found) if isinstance(value, tuple) else found) == value
 
 
+def test_the_walls_of_the_world_are_set_as_in_a_file() -> None:
+    world = load_scene("gas")
+    for text, bounds in (
+        ("[-1, 0, 2*3, 40 dm]", (-1.0, 0.0, 6.0, 4.0)),
+        ("[-300, 0, 300, 100] cm", (-3.0, 0.0, 3.0, 1.0)),
+        ("null", None),
+    ):
+        assign(world, [f"physics.bounds={text}"])
+        assert world.physics.bounds == bounds
+    allowed = (
+        "must be null or four finite numbers [xmin, ymin, xmax, ymax] m with xmin < xmax and ymin < ymax"
+    )
+    for bad in ("[1, 0, 0, 1]", "[0, 0, 1]", "[0, 0, 1, 1e999]", "[0, 0, 1, 2 kg]", "wide", ""):
+        line = refusal(world, f"physics.bounds={bad}")
+        assert line.startswith(f': physics.bounds = "{bad}": ') and allowed in line
+
+
 def test_fields_of_one_component_are_checked_together_and_the_later_of_two_holds() -> None:
     world = load_scene("drop")
     box = ["ball.Shape.kind=box", "ball.Shape.radius=0", "ball.Shape.width=9", "ball.Shape.height=1"]

@@ -88,13 +88,12 @@ def _write(output: Output, content: bytes) -> None:
 
 def _import(file: str) -> int:
     try:
-        with open(file, "rb"):  # before anything is said: a file that is not there needs no warning
-            print(_WARNING, file=sys.stderr)
         unpack(Path(file))
     except ArchiveError as error:
         raise CommandError(f"{file}: {error}") from error
     except (OSError, ValueError) as error:  # ValueError: a null character in the name
         raise CommandError(f"{file}: {reason_of(error)}") from error
+    print(_WARNING, file=sys.stderr)
     mark_warm()
     complete = "all kernels are there" if is_warm() else "some kernels are missing: those will be compiled"
     print(f"imported; {complete}")

@@ -11,15 +11,16 @@ from physicslab.contacts.arguments import motion_of
 from physicslab.contacts.report import ContactPoint, contacts_of
 from physicslab.diagnostics.present_forces import with_present_forces
 from physicslab.ecs.vector import Vector2, rotated
+from physicslab.languages.sentence import Sentence
 from physicslab.state import joint_figures
 from physicslab.state.joints import Joint
 from physicslab.state.masses import quiet
 from physicslab.stepping.forces import forces_by_system
 from physicslab.world import World
 
-type Kind = Literal["field", "normal", "friction"]
+type Kind = Literal["field", "joint", "normal", "friction"]
 
-_DAMPING = "damping"
+_DAMPING, _WALL = Sentence("damping"), Sentence("the wall")
 _NAMES = {
     "GravitySystem": "weight", "SpringSystem": "springs", "DragSystem": "air", "CoulombSystem": "charges",
     "ElectricFieldSystem": "electric field", "MagneticFieldSystem": "magnetic field",
@@ -53,7 +54,7 @@ class NamedForce:
     place : Vector2
         Where it acts [m].
     kind : str
-        ``"field"``, or for a contact ``"normal"`` or ``"friction"``.
+        ``"field"``, ``"joint"``, or for a contact ``"normal"`` or ``"friction"``.
     pair : Pair, optional
         The pair of surfaces of a normal force.
     """
@@ -89,17 +90,19 @@ def forces_on(world: World, entity: int) -> tuple[NamedForce, ...]:
     for number, pull in joint_figures.forces_on(now, row).items():
         joint = now.joints.joints[number]
         at = _end(now, joint, row)
-        found.append(NamedForce(_joint_name(world, joint), Vector2(*pull.tolist()), at, "field"))
+        found.append(NamedForce(_joint_name(world, joint), Vector2(*pull.tolist()), at, "joint"))
     for contact in contacts_of(now, entity):
         on_b = contact.b == entity
-        other = world.label(contact.a if on_b else contact.b) if contact.a and contact.b else "the wall"
+        other = world.label(contact.a if on_b else contact.b) if contact.a and contact.b else _WALL
         sign = 1.0 if on_b else -1.0
         normal, tangent = contact.normal, contact.normal.perpendicular
         total_n = sum(point.normal_force for point in contact.points)
         total_t = sum(point.tangent_force for point in contact.points)
+        by_normal = Sentence("normal, from {body}", body=other)
+        by_friction = Sentence("friction, from {body}", body=other)
         place, pair = _place(contact.points), Pair(other, contact.friction, contact.restitution)
-        found.append(NamedForce(f"normal, from {other}", sign * total_n * normal, place, "normal", pair))
-        found.append(NamedForce(f"friction, from {other}", sign * total_t * tangent, place, "friction"))
+        found.append(NamedForce(by_normal, sign * total_n * normal, place, "normal", pair))
+        found.append(NamedForce(by_friction, sign * total_t * tangent, place, "friction"))
     largest = max((one.force.magnitude for one in found), default=0.0)
     return tuple(one for one in found if one.force.magnitude > _LEAST_SHARE * largest)
 
@@ -107,7 +110,7 @@ def forces_on(world: World, entity: int) -> tuple[NamedForce, ...]:
 def _joint_name(world: World, joint: Joint) -> str:
     """Return the name of a joint in words; of one that is a component of a body, its kind: ``"rod"``."""
     is_body = world.has(joint.entity, Transform)
-    return joint.kind.__name__.lower() if is_body else world.label(joint.entity)
+    return Sentence(joint.kind.__name__.lower()) if is_body else world.label(joint.entity)
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,7 +139,8 @@ class LastStep:
         """The change of momentum that the impulses do not account for [N s].
 
         Impulses of springs, drag and damping are the mean of those before and after the step times its
-        length, those of contacts the last substep's: where forces change within it, the sum is no exact one.
+        length, those of contacts and joints the last substep's: where forces change within it, the sum is no
+        exact one.
         """
         return self.change - sum(self.impulses.values(), Vector2())
 
@@ -204,7 +208,7 @@ def _impacts(world: World, entity: int) -> dict[str, Vector2]:
             float(record["normal_impulse"]) * normal + float(record["tangent_impulse"]) * normal.perpendicular
         )
         other = a if entity == b else b
-        name = f"impact, with {world.label(other) if other else 'the wall'}"
+        name = Sentence("impact, with {body}", body=world.label(other) if other else _WALL)
         found[name] = found.get(name, Vector2()) + (on_b if entity == b else -on_b)
     return found
 
@@ -267,8 +271,8 @@ def _fields(world: World) -> dict[str, NDArray[np.float64]]:
 
 def _field_name(world: World, system: str) -> str:
     if system == "GravitySystem" and world.physics.gravity_mode == "planet":
-        return "gravity of the others"
-    return _NAMES.get(system, system.removesuffix("System").lower())
+        return Sentence("gravity of the others")
+    return Sentence(_NAMES.get(system, system.removesuffix("System").lower()))
 
 
 def _end(world: World, joint: Joint, row: int) -> Vector2:

@@ -37,7 +37,7 @@ for _name in IMPACT.names or ():
     if IMPACT[_name].kind == "f":
         _NEITHER[_name] = np.nan
 _STICKS = 1e-9
-"""Share of the speeds before an impact up to which the sliding after it is treated as zero."""
+"""Share of the speeds of an impact up to which an approach, or the sliding after it, is treated as zero."""
 _GROWS_FROM = 0.25
 """Share of the ring that is filled between two readings from which on it is doubled."""
 _MAX_RING = 1_600_000
@@ -120,8 +120,10 @@ def read_impacts(records: NDArray[Any]) -> ImpactColumns:
     """
     vn_before, vt_before = speeds_at(records, records["x"], records["y"], "before")
     vn_after, vt_after = speeds_at(records, records["x"], records["y"], "after")
+    # A resting pair that passes an impact on approaches by rounding at most.
+    moved = records["normal_impulse"] * (records["inverse_mass_a"] + records["inverse_mass_b"])
     with np.errstate(all="ignore"):
-        e_found = np.where(vn_before < 0.0, -vn_after / vn_before, np.nan)
+        e_found = np.where(vn_before < -_STICKS * moved, -vn_after / vn_before, np.nan)
     none = np.abs(vt_after) <= _STICKS * (np.abs(vn_before) + np.abs(vt_before))
     normal, tangent = records["normal_impulse"], records["tangent_impulse"]
     normal_2, tangent_2 = records["normal_impulse_2"], records["tangent_impulse_2"]

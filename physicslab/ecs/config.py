@@ -8,7 +8,7 @@ from dataclasses import FrozenInstanceError, dataclass, fields, replace
 from functools import wraps
 from typing import Any, ClassVar, Literal
 
-from physicslab.ecs.fields import COORDINATE_LIMIT, Field, InvalidValue, Kind
+from physicslab.ecs.fields import COORDINATE_LIMIT, Field, Kind
 from physicslab.ecs.text import no_such
 from physicslab.ecs.vector import Vector2
 
@@ -89,7 +89,9 @@ class PhysicsConfig:
     magnetic_field: float = _setting(0.0, "number", "magnetic field, out of the plane", unit="T")
     linear_damping: float = _setting(0.0, "number", "rate at which velocities decay", unit="1/s", minimum=0.0)
     angular_damping: float = _setting(0.0, "number", "rate at which spins decay", unit="1/s", minimum=0.0)
-    bounds: tuple[float, float, float, float] | None = None
+    bounds: tuple[float, float, float, float] | None = _setting(
+        None, "box", "walls of the world", unit="m", limit=COORDINATE_LIMIT, derived="no walls"
+    )
     bounds_restitution: float = _setting(0.5, "number", "restitution of the walls", minimum=0.0, maximum=1.0)
     bounds_friction: float = _setting(0.3, "number", "Coulomb friction coefficient of the walls", minimum=0.0)
 
@@ -98,8 +100,6 @@ class PhysicsConfig:
 
     def __post_init__(self) -> None:
         _settle(self)
-        if self.bounds is not None:
-            object.__setattr__(self, "bounds", checked_box(self.section, "bounds", self.bounds))
 
 
 def field_names(config: type[PhysicsConfig] | type[SimulationConfig]) -> tuple[str, ...]:
@@ -130,24 +130,6 @@ def _refuse(config: PhysicsConfig | SimulationConfig, name: str, value: object) 
         f"{config.section}.{name} cannot be changed by itself: "
         f"{record} = dataclasses.replace({record}, {name}=...)"
     )
-
-
-def checked_box(owner: str, name: str, value: Any) -> tuple[float, float, float, float]:
-    """Return a rectangle xmin, ymin, xmax, ymax [m], or raise :class:`InvalidValue`."""
-    corner = Field(name, "vector", limit=COORDINATE_LIMIT, owner=owner)
-    try:
-        xmin, ymin, xmax, ymax = value
-        (xmin, ymin), (xmax, ymax) = corner.check((xmin, ymin)), corner.check((xmax, ymax))
-        ordered = xmin < xmax and ymin < ymax
-    except (TypeError, ValueError):
-        ordered = False
-    if not ordered:
-        words = (
-            "null or four finite numbers [xmin, ymin, xmax, ymax] m with xmin < xmax and ymin < ymax, "
-            f"at most {COORDINATE_LIMIT:g} each"
-        )
-        raise InvalidValue(owner, name, value, words)
-    return xmin, ymin, xmax, ymax
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,7 +14,7 @@ from physicslab.ecs.quantity_text import InvalidText, evaluate_as, is_written
 from physicslab.ecs.text import code_of, has_width, is_line
 from physicslab.ecs.vector import Vector2
 
-Kind = Literal["number", "whole", "vector", "flag", "entity", "choice", "text", "points"]
+Kind = Literal["number", "whole", "vector", "flag", "entity", "choice", "text", "points", "box"]
 
 _SHOWN_LIMIT = 100
 """Characters of a value that a message shows."""
@@ -130,6 +130,11 @@ class Field:
                 return f"two finite numbers [x, y]{unit}{each}"
             case "points":
                 return f"a list of points [x, y]{unit} of finite numbers, at most {self.limit:g} each"
+            case "box":
+                return (
+                    f"null or four finite numbers [xmin, ymin, xmax, ymax]{unit} with xmin < xmax and "
+                    f"ymin < ymax, at most {self.limit:g} each"
+                )
         words = "a whole number" if self.kind == "whole" else "a finite number"
         if self.above > -math.inf:
             words += f" > {self.above:g}"
@@ -277,6 +282,13 @@ def _points(field: Field, value: object) -> int | None:
     return POINTS.code_of(tuple(known)) if len(known) == len(found) else None
 
 
+def _box(field: Field, value: object) -> tuple[float, float, float, float] | None:
+    if not isinstance(value, tuple | list | np.ndarray) or len(value) != 4:
+        return None
+    low, high = _vector(field, value[:2]), _vector(field, value[2:])
+    return (*low, *high) if low and high and low[0] < high[0] and low[1] < high[1] else None
+
+
 _CONVERSIONS: Mapping[Kind, Callable[[Field, object], Any]] = {
     "number": _number,
     "whole": _whole,
@@ -286,5 +298,6 @@ _CONVERSIONS: Mapping[Kind, Callable[[Field, object], Any]] = {
     "choice": _choice,
     "text": _text,
     "points": _points,
+    "box": _box,
 }
 """How each kind of field turns a value into what its column stores; ``None`` for one that it cannot hold."""

@@ -89,7 +89,7 @@ _SPACED = re.compile(r"(?<=[A-Za-zµ°π0-9)])[ ·]+(?=[A-Za-zµ°π(])")
 
 _QUOTED = re.compile(r'"([^"]*)"')
 """A name that is no plain word, as ``"box 2"`` in ``"box 2".y``."""
-_PAIR = re.compile(r"\s*\[(?P<x>[^],]+),(?P<y>[^],]+)\](?P<unit>[^][]*)")
+_ROW = re.compile(r"\s*\[(?P<parts>[^][]*)\](?P<unit>[^][]*)")
 _POINTS = re.compile(r"\s*\[(?P<points>\s*(?:\[[^][]*\]\s*,?\s*)*)\](?P<unit>[^][]*)")
 
 
@@ -298,12 +298,17 @@ def evaluate_pair(text: str, unit: str = "1") -> tuple[float, float]:
     >>> evaluate_pair("[1 + 1, 3] cm", "m"), evaluate_pair("[20 mm, 0.5]", "m")
     ((0.02, 0.03), (0.02, 0.5))
     """
-    pair = _PAIR.fullmatch(text)
-    if pair is None:
-        raise InvalidText(f"'{shortened(printable(text.strip()), _SHOWN_LIMIT)}' is no pair")
-    own = pair["unit"].strip()
-    x, y = (evaluate(f"({part.strip()}) {own}" if own else part, unit) for part in (pair["x"], pair["y"]))
+    x, y = _evaluate_row(text, unit, 2, "pair")
     return x, y
+
+
+def _evaluate_row(text: str, unit: str, count: int, noun: str) -> list[float]:
+    row = _ROW.fullmatch(text)
+    parts = [] if row is None else row["parts"].split(",")
+    if row is None or len(parts) != count:
+        raise InvalidText(f"'{_shown(text)}' is no {noun}")
+    own = row["unit"].strip()
+    return [evaluate(f"({part.strip()}) {own}" if own else part, unit) for part in parts]
 
 
 def evaluate_points(text: str, unit: str = "1") -> list[tuple[float, float]]:
@@ -333,7 +338,7 @@ def evaluate_as(kind: str, value: Any, unit: str = "1") -> Any:
     Parameters
     ----------
     kind : str
-        ``"number"``, ``"whole"``, ``"vector"`` or ``"points"``.
+        ``"number"``, ``"whole"``, ``"vector"``, ``"points"`` or ``"box"``, four numbers.
     value : str, or pair
         What :func:`evaluate`, :func:`evaluate_pair` and :func:`evaluate_points` take; a pair of texts and
         numbers too.
@@ -352,6 +357,8 @@ def evaluate_as(kind: str, value: Any, unit: str = "1") -> Any:
     """
     if kind == "points":
         return evaluate_points(value, unit) if isinstance(value, str) else value
+    if kind == "box":
+        return _evaluate_row(value, unit, 4, "row of four numbers")
     if kind == "vector":
         if isinstance(value, str):
             return evaluate_pair(value, unit)

@@ -77,7 +77,7 @@ def _value(spec: Field, text: str, names: Mapping[str, int], where: str) -> Any:
         return None
     try:
         match spec.kind:
-            case "number" | "whole" | "vector" | "points":
+            case "number" | "whole" | "vector" | "points" | "box":
                 return evaluate_as(spec.kind, text, spec.unit)
             case "flag":
                 return _WORDS.get(text, text)

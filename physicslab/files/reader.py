@@ -15,10 +15,9 @@ from physicslab.ecs.config import (
     MIN_TIME,
     PhysicsConfig,
     SimulationConfig,
-    checked_box,
     field_names,
 )
-from physicslab.ecs.fields import Field
+from physicslab.ecs.fields import COORDINATE_LIMIT, Field
 from physicslab.files import checks
 from physicslab.files.entities import check_contacts, check_entities, check_ids, check_joints, check_rests
 from physicslab.files.numbers import check_numbers, renumbered, renumbered_islands, renumbered_rows
@@ -226,9 +225,10 @@ def _view(value: object, source: str) -> View | None:
     if value is None:
         return None
     try:
-        return checked_box("scene", "view", value)
+        view: View = Field("view", "box", unit="m", limit=COORDINATE_LIMIT).check(value)
     except InvalidValue as error:
         raise checks.refusal(f"{source}: view", value, error.allowed) from None
+    return view
 
 
 def _desk(value: object, where: str) -> Desk:

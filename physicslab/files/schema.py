@@ -17,17 +17,21 @@ from physicslab.state.contents import LEVELS, SCENE_TEXTS, SHOWN
 type _Schema = dict[str, Any]
 
 _NUMBER: _Schema = {"type": "number"}
-_BOX: _Schema = {"type": ["array", "null"], "items": _NUMBER, "minItems": 4, "maxItems": 4}
+_BOX: _Schema = {"type": "array", "items": _NUMBER, "minItems": 4, "maxItems": 4}
 
 
 def scene_schema() -> _Schema:
     """Return the schema, of draft 2020-12."""
     known: dict[str, _Schema] = {
         "format": {"const": FORMAT},
-        "view": {**_BOX, "description": "what a window shows at first: xmin, ymin, xmax, ymax [m]"},
+        "view": {
+            **_BOX,
+            "type": ["array", "null"],
+            "description": "what a window shows at first: xmin, ymin, xmax, ymax [m]",
+        },
         "time": {"type": "number", "minimum": 0.0, "description": "where the clock stands [s]"},
         "desk": _object({"level": {"enum": list(LEVELS)}, "shown": _list({"enum": list(SHOWN)})}, ["level"]),
-        "physics": _settings(PhysicsConfig, bounds=_BOX),
+        "physics": _settings(PhysicsConfig),
         "simulation": _settings(SimulationConfig),
         "entities": _list({"$ref": "#/$defs/entity"}),
         "solver": {"type": "object"},
@@ -49,12 +53,8 @@ def scene_schema() -> _Schema:
     }
 
 
-def _settings(config: type[PhysicsConfig] | type[SimulationConfig], **others: _Schema) -> _Schema:
-    found = _fields(config.FIELDS)
-    return {
-        **_object({**found["properties"], **others}),
-        "description": (config.__doc__ or "").splitlines()[0],
-    }
+def _settings(config: type[PhysicsConfig] | type[SimulationConfig]) -> _Schema:
+    return {**_fields(config.FIELDS), "description": (config.__doc__ or "").splitlines()[0]}
 
 
 def _fields(specs: tuple[Field, ...]) -> _Schema:
@@ -91,6 +91,8 @@ def _value(spec: Field) -> _Schema:
             return _point(spec)
         case "points":
             return _list(_point(spec))
+        case "box":
+            return _BOX
     bounds: _Schema = {"type": "integer" if spec.kind == "whole" else "number"}
     if spec.above > -math.inf:
         bounds["exclusiveMinimum"] = spec.above

@@ -195,7 +195,10 @@ class Configure:
     def words(self, world: World) -> str:
         """Return what it does, in plain English."""
         units = {spec.name: f" {spec.unit}" for spec in self.CONFIG.FIELDS if spec.unit != "1"}
-        shown = ((name, shown_value(value) + units.get(name, "")) for name, value in self.changes.items())
+        shown = (
+            (name, shown_value(value) + ("" if value is None else units.get(name, "")))
+            for name, value in self.changes.items()
+        )
         return ", ".join(f"{name.replace('_', ' ')}: {value}" for name, value in shown)
 
     def carry_out(self, world: World) -> Self:

@@ -15,6 +15,7 @@ from dataclasses import dataclass, field
 
 from physicslab.history.commands import Command
 from physicslab.history.digest import Digest
+from physicslab.languages.sentence import Sentence
 
 
 @dataclass(slots=True)
@@ -300,7 +301,7 @@ def run_in_words(steps: int, seconds: float) -> str:
     if not steps:
         return "moved by hand"
     shown = f"{seconds:.1f}" if seconds >= 0.1 else f"{seconds:.2g}"
-    return f"ran {shown} s"
+    return Sentence("ran {time} s", time=shown)
 
 
 def _common_of_runs(one: Run, two: Run) -> int:

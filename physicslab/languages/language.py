@@ -94,13 +94,19 @@ class Language:
             name: self.reword(value) if isinstance(value, Sentence) else self.decimal(value)
             for name, value in text.values.items()
         }
-        return self._catalogue.gettext(text.template).format(**said)
+        return (self._known(text.template) or text.template).format(**said)
 
-    def _found(self, text: str) -> str:
-        for written in (text, text[0].swapcase() + text[1:]):  # as within a sentence, or where one begins
+    def _known(self, text: str) -> str:
+        """Return a text in the language; empty where the catalogue has it neither so nor as one begins."""
+        for written in (text, text[:1].swapcase() + text[1:]):  # as within a sentence, or where one begins
             known = self._catalogue.gettext(written)
             if known != written or (written,) in sources(self.code):
                 return known
+        return ""
+
+    def _found(self, text: str) -> str:
+        if known := self._known(text):
+            return known
         if "\n" in text:
             return "\n".join(map(self.reword, text.split("\n")))
         for pattern, source in (*self._sentences.get(text[:1], ()), *self._sentences.get("", ())):

@@ -33,6 +33,11 @@ class Sentence(str):
         made.template, made.code, made.values = template, code, held
         return made
 
+    def capitalize(self) -> Self:
+        """Return the sentence as one begins; names in it stay as they are."""
+        template = self.template[:1].upper() + self.template[1:]
+        return type(self)(template, self.code, **self.values)
+
     def __getnewargs_ex__(self) -> tuple[tuple[str, str], dict[str, str]]:
         """Return what a copy is made of."""
         return (self.template, self.code), self.values

@@ -166,7 +166,7 @@ def _places(document: dict[str, Any]) -> Iterable[tuple[str, tuple[Field, ...], 
 
 def _number(spec: Field, value: Any, scope: Parameters) -> Any:
     """Return the number that a text in the place of one stands for."""
-    if spec.kind not in ("number", "whole", "vector", "points"):
+    if spec.kind not in ("number", "whole", "vector", "points", "box"):
         return value
     if isinstance(value, list):
         return [_number(spec, part, scope) for part in value]

@@ -80,7 +80,8 @@ class SplitPart:
         self, state: State, forces: Sequence[ForceSystem], method: Integrator, steps: int,
         rows: NDArray[np.bool_], group: SpringGroup | None = None,
     ) -> None:  # fmt: skip
-        self.method, self.steps, self._forces = method, steps, forces
+        self.method, self.steps = (method, steps) if group is None else (DOP853, 1)
+        self._forces = forces
         self.follow(state, rows)
         self.springs = None if group is None else SpringFlow(state, forces, self.ode.layout, group)
         if self.springs is None:
@@ -119,16 +120,15 @@ class SplitPart:
             )  # fmt: skip
 
     def _follow(self, state: State, h: float) -> int:
-        """Advance by the method, or where springs turn too fast for its steps, by one that chooses them."""
-        ode, method, steps = self.ode, self.method, self.steps
+        """Advance by the method: that of springs which turn too fast for their flow chooses its steps."""
+        ode = self.ode
         if self.springs is None:
             ode.gather_state(state)
         else:
-            method, steps = DOP853, 1
-            state.compile(method.kernels)
+            state.compile(self.method.kernels)
             ode.gather(state)
         try:
-            made = method.flow(state, ode, h / steps, steps)
+            made = self.method.flow(state, ode, h / self.steps, self.steps)
         except StepTooSmall as error:
             raise changes_fast(state, ode.forces, error) from error
         ode.scatter(state, h)

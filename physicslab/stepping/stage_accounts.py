@@ -9,9 +9,12 @@ from numpy.typing import NDArray
 from physicslab.components import Mass, Spring, Transform, Velocity
 from physicslab.contacts.arguments import inverse_in
 from physicslab.ecs.vector import Vector2
-from physicslab.kernels.accounts import DAMPING, ENERGY, GRAVITY, HAND, OVERLAP
+from physicslab.kernels import direct_entry
+from physicslab.kernels.accounts import DAMPING, ENERGY, FIELDS, GRAVITY, HAND, OVERLAP
+from physicslab.kernels.forces.budget import ACCOUNTS
+from physicslab.kernels.forces.force_calls import add_forces
 from physicslab.kernels.solver import work
-from physicslab.state.packed import spring_ends, turned_anchors
+from physicslab.state.packed import StateLayout, spring_ends, turned_anchors
 from physicslab.state.state import State
 from physicslab.systems.spring import SpringSystem
 from physicslab.systems.system import ForceSystem, System
@@ -31,6 +34,8 @@ class StageAccounts:
         The forces that act.
     flown : bool
         Whether a compiled flow moves all that forces act on which are not uniform, and books what they do.
+    kicked : bool
+        Whether all forces kick.
 
     Attributes
     ----------
@@ -44,7 +49,9 @@ class StageAccounts:
 
     kernels: tuple[Any, ...] = (work.book_kick, work.book_damping)
 
-    def __init__(self, state: State, forces: Sequence[ForceSystem], *, flown: bool = False) -> None:
+    def __init__(
+        self, state: State, forces: Sequence[ForceSystem], *, flown: bool = False, kicked: bool = True
+    ) -> None:
         uniform = [force.uniform_acceleration(state) if force.is_engine else None for force in forces]
         self.gravity = sum((g for g in uniform if g is not None), start=Vector2(0.0, 0.0))
         others = [force for force, g in zip(forces, uniform, strict=True) if g is None]
@@ -63,19 +70,20 @@ class StageAccounts:
         self._apart = [force for force in others if force.account != self.other]
         self._free = free
         self._pulls = {force: np.zeros_like(state.bodies.pull) for force in (*free, *self._apart)}
+        self._working = _working(state, self._storing) if kicked else {}
         self._damps = springs and _has_dampers(state)
         self._dampers = np.zeros_like(state.bodies.pull)
         bodies = state.bodies
-        driven = state.table(Velocity).present & (bodies.inverse_mass == 0.0) & ~bodies.sub_integrated
-        self._driven = driven if others and driven.any() else None
+        driven = _driven(state, others)
+        self._driven = driven if driven.any() else None
         self._start: tuple[NDArray[np.float64], NDArray[np.float64]]
         self._met: tuple[NDArray[np.float64], NDArray[np.float64]]
-        self._before = bodies.packed[2, : 2 * len(driven)].reshape(-1, 2)
+        self._before = bodies.packed[2, : 2 * len(bodies.inverse_mass)].reshape(-1, 2)
 
     @property
     def notes_forces(self) -> bool:
         """Whether a force stores no energy, or not all its work, so that each must be noted by itself."""
-        return bool(self._pulls) or self._damps
+        return bool(self._pulls) or self._damps or bool(self._working)
 
     @property
     def follows_way(self) -> bool:
@@ -90,7 +98,9 @@ class StageAccounts:
         """Note the pull of a force that is booked by itself; ``before`` (3 rows,) is that of those before."""
         if system in self._pulls:
             np.subtract(state.bodies.pull, before, out=self._pulls[system])
-        elif self._damps and isinstance(system, SpringSystem):
+        if isinstance(system, ForceSystem) and system in self._working:
+            self._working[system] = _places(state)
+        if self._damps and isinstance(system, SpringSystem):
             self._dampers = _pull_of_dampers(state)
 
     def book_causes(self, state: State, h: float) -> None:
@@ -149,13 +159,16 @@ class StageAccounts:
         free = (bodies.awake_inverse_mass > 0.0)[:, None]
         state.account.sums[OVERLAP, ENERGY] += stored + float(((bodies.force - weight) * way * free).sum())
 
-    def book_way(self, state: State) -> None:
-        """Book the work of forces along the way of the substep, and that of what drives against them."""
+    def book_way(self, state: State, h: float) -> None:
+        """Book the work of forces along the way of a substep of ``h`` seconds, and that of what drives."""
         bodies, sums, way = state.bodies, state.account.sums, self._way(state, self._start)
         self._book_work(state, ~bodies.sub_integrated, way)
+        for force, (position, angle) in self._working.items():
+            q, v = np.concatenate((position.ravel(), angle, (state.time,))), np.append(way / h, 0.0)
+            for account, power in _powers(state, force, q, v):
+                sums[account, ENERGY] += h * power
         if self._driven is not None:
-            rows = np.concatenate((np.repeat(self._driven, 2), self._driven))
-            pull = bodies.pull[rows]
+            rows, pull = self._driven, bodies.pull[self._driven]
             for force in self._free:
                 if force.couples_nothing:  # whatever it gives to a driven body comes to no other
                     pull -= self._pulls[force][rows]
@@ -187,7 +200,8 @@ class StageAccounts:
         moved = (bodies.awake_inverse_mass > 0.0) & of
         rows = np.concatenate((np.repeat(moved, 2), moved & (bodies.awake_inverse_inertia > 0.0)))
         worked = [(force.account, float(self._pulls[force][rows] @ way[rows])) for force in self._free]
-        if self._damps:
+        if self._damps:  # at an end that is driven, too: what drives it works against the damper
+            rows = np.concatenate((np.repeat(of, 2), of))
             worked.append((DAMPING, float(self._dampers[rows] @ way[rows])))
         for account, energy in worked:
             # Damping gives no energy: what a kick gives that overshoots is an error of the method.
@@ -198,6 +212,45 @@ def _places(state: State) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return copies of the positions (rows, 2) [m] and angles [rad] of all bodies."""
     transform = state.table(Transform)
     return transform["position"].copy(), transform["angle"].copy()
+
+
+def _driven(state: State, forces: Sequence[ForceSystem]) -> NDArray[np.bool_]:
+    """Return the coordinates (3 rows,) that go on steadily whatever ``forces`` act on them."""
+    bodies, turned = state.bodies, np.zeros(len(state.entity_index), np.bool_)
+    moves = state.table(Velocity).present & ~bodies.sub_integrated & bool(forces)
+    for force in forces:
+        turned[force.turned(state)] = True
+    shifted = moves & (bodies.inverse_mass == 0.0)
+    turned = moves & (bodies.inverse_inertia == 0.0) & (turned | shifted)
+    return np.concatenate((np.repeat(shifted, 2), turned))
+
+
+def _working(
+    state: State, forces: Sequence[ForceSystem]
+) -> dict[ForceSystem, tuple[NDArray[np.float64], NDArray[np.float64]]]:
+    """Return the forces that store energy, and also give or take it, with where bodies are."""
+    found: dict[ForceSystem, tuple[NDArray[np.float64], NDArray[np.float64]]] = {}
+    layout = StateLayout.of_rows(len(state.entity_index))
+    for force in forces:
+        packed = force.packed(state, layout) if type(force).packs() and force.account == FIELDS else None
+        if packed is not None and packed.work_slots:
+            found[force] = _places(state)
+    return found
+
+
+def _powers(
+    state: State, force: ForceSystem, q: NDArray[np.float64], v: NDArray[np.float64]
+) -> list[tuple[int, float]]:
+    """Return what a force gives in a second to each account [W], at q and v of every row (3 rows + 1,)."""
+    packed = force.packed(state, StateLayout.of_rows(len(state.entity_index)))
+    assert packed is not None
+    slots = packed.work_slots or ()
+    for number, (_, slot) in enumerate(slots):
+        packed.indices[slot] = len(q) + ACCOUNTS * number
+    room = np.zeros(len(q) + ACCOUNTS * len(slots))
+    state.compile((packed.kernel, add_forces))
+    direct_entry(add_forces)(q, v, room, np.array([packed.call]))
+    return [(account, float(room[packed.indices[slot]])) for account, slot in slots]
 
 
 def _has_dampers(state: State) -> bool:

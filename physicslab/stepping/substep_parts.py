@@ -83,7 +83,7 @@ class SubstepParts:
         turned = [f for f in schedule.forces if f.gyration(state) is not None] if self.split else []
         self.forces = [force for force in schedule.forces if force not in turned]
         flown = self.split is not None and any(part.springs is not None for part in self.split.parts)
-        self.accounts = StageAccounts(state, self.forces, flown=flown)
+        self.accounts = StageAccounts(state, self.forces, flown=flown, kicked=self.split is None)
         self._run: Callable[[Stage, State, float], None] = schedule.run
         # Where a system of one's own moves the bodies itself, its error is that of the method.
         if schedule.find(IntegrateSystem) is not None and any(map(acts_unbooked, schedule.running)):
@@ -120,7 +120,7 @@ class SubstepParts:
         """Add a stage of the substep; return why some of it is Python's, if it is."""
         systems, split, accounts, reason = self._schedule.at(stage), self.split, self.accounts, ""
         if stage is Stage.RELAX and accounts.follows_way:
-            self._hook(lambda state, h: accounts.book_way(state))
+            self._hook(accounts.book_way)
         if stage is Stage.FORCE:
             reason = self._add_forces(state, systems, share)
         elif stage is Stage.PREDICT:

@@ -246,17 +246,21 @@ def _note_round(
     """Book a round of impulses that has changed the speeds ``old`` to ``v``, and log its impacts.
 
     In a short step all forces have acted already, and those of its second half are not part of the moment;
-    what does not approach there is the load of a resting contact. Returns how many pairs met.
+    what does not approach there is the load of a resting contact. Elsewhere a resting pair takes part in the
+    impact of others, and is one of those that met. Returns how many pairs did.
     """
     written, i = 0, 0
     bounced, friction_work = account[IMPACTS, ENERGY], account[FRICTION, ENERGY]
     late = 1.0 / rate if rate > 0.0 else 0.0
     while i < n:
-        pair, end, approach, restitution = impact.points[i, F.PAIR], i, 0.0, 0.0
+        pair, end, approach, restitution, met = impact.points[i, F.PAIR], i, 0.0, 0.0, False
         while end < n and impact.points[end, F.PAIR] == pair:
             speed = -impact.measures[end, F.VN]
-            if impact.vectors[UNKNOWN, 2 * end] > 0.0 and speed > max(rest, approach):
-                approach, restitution = speed, impact.measures[end, F.RESTITUTION]
+            change = impact.a[2 * end, 2 * end] * impact.vectors[UNKNOWN, 2 * end]
+            if change > 0.0:
+                met = met or speed > rest or (rate == 0.0 and change > rest)
+                if speed > approach:
+                    approach, restitution = speed, impact.measures[end, F.RESTITUTION]
             end += 1
         a, b, wall = scene.pairs[pair, 0], scene.pairs[pair, 1], scene.pairs[pair, 2]
         if wall >= F.FIRST_ROW:
@@ -269,9 +273,9 @@ def _note_round(
         pose = Pose(q[2 * a], q[2 * a + 1], q[ra], q[2 * b], q[2 * b + 1], q[rb])
         before = _pair_velocity(scene, old, late, acceleration, a, b)
         after = _pair_velocity(scene, v, late, acceleration, a, b)
-        cause = CONTACT if rate > 0.0 and approach == 0.0 else IMPACTS
+        cause = IMPACTS if met else CONTACT
         _book(scene, impact, i, end, q, pose, before, after, mass, cause, account)
-        if approach > 0.0:
+        if met:
             if len(log) > 0:
                 ids = Pair(
                     entities[a] if wall < 0 else 0, entities[b], wall, restitution, impact.measures[i, F.MU]

@@ -89,6 +89,8 @@ def vector_quantity(value: Vector2, unit: str) -> str:
     '(9.00, -0.25) kg m/s'
     >>> vector_quantity(Vector2(1.5e-9, 0.0), "kg m/s")
     '(1.50, 0.00)·10⁻⁹ kg m/s'
+    >>> vector_quantity(Vector2(-0.001, -103.0), "kg m/s")
+    '(0, -103) kg m/s'
     """
     largest = max(abs(value.x), abs(value.y))
     if not math.isfinite(largest):
@@ -98,7 +100,7 @@ def vector_quantity(value: Vector2, unit: str) -> str:
     power = math.floor(math.log10(largest))
     plain = -2 <= power <= 3
     scale, decimals = (1.0, min(max(2 - power, 0), 4)) if plain else (10.0**power, 2)
-    x, y = (f"{component / scale + 0.0:.{decimals}f}" for component in value)
+    x, y = (f"{component / scale:z.{decimals}f}" for component in value)
     factor = "" if plain else f"·10{str(power).translate(_RAISED)}"
     return f"({x}, {y}){factor} {unit}"
 

@@ -222,6 +222,12 @@ def _changed(world: World, window: Window, name: str, by: Vector2 | float) -> li
     ]
 
 
+def _of_all(world: World, window: Window, did: str) -> Sentence:
+    """Return what was done to the selection: to the one by its name, or to how many."""
+    chosen = window.selection.entities
+    return Sentence(did, what=world.label(chosen[0]) if len(chosen) == 1 else len(chosen))
+
+
 def nudger(across: int, up: int) -> Action:
     """Return what moves all that is selected by so many pixels."""
 
@@ -229,7 +235,7 @@ def nudger(across: int, up: int) -> Action:
         by = Vector2(across, up) / window.camera.scale
         moves = _changed(world, window, "position", by)
         moves += filter(None, (nudged(world, entity, by) for entity in window.selection.entities))
-        window.edits.do_all(moves, f"moved {len(moves)}")
+        window.edits.do_all(moves, _of_all(world, window, "moved {what}"))
 
     return nudge
 
@@ -240,7 +246,7 @@ def turner(sign: int) -> Action:
     def turn(world: World, window: Window) -> None:
         by = sign * math.radians(15.0 if window.snapping.active else 1.0)
         turns = _changed(world, window, "angle", by)
-        window.edits.do_all(turns, f"turned {len(turns)}")
+        window.edits.do_all(turns, _of_all(world, window, "turned {what}"))
 
     return turn
 

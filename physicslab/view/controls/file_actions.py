@@ -8,6 +8,7 @@ from physicslab.export.film import ENDINGS
 from physicslab.files.listing import is_recording
 from physicslab.files.replace import reason_of
 from physicslab.files.scene import SceneError, file_stem, load_scene
+from physicslab.languages.sentence import Sentence
 from physicslab.view.controls.lesson_actions import open_lesson
 from physicslab.view.controls.saving import name_of
 from physicslab.view.window.filming import FROM_NOW
@@ -65,9 +66,12 @@ def open_scene(window: Window, source: str | Path) -> str:
     window.scenes.next_world, window.scenes.opening = opened, None
     window.scenes.source = source
     window.scenes.note(source, stamp)
-    what = printable(str(source)) if isinstance(source, Path) else opened.title
-    more = f"; not taken: {len(losses)} (listed in the panel at the right)" if losses else ""
-    window.notify(f"Opened {what}{more}", 8.0 if losses else 3.0)
+    what = printable(str(source)) if isinstance(source, Path) else Sentence(opened.title)
+    if losses:
+        told = "Opened {scene}; not taken: {n} (listed in the panel at the right)"
+        window.notify(Sentence(told, scene=what, n=len(losses)), 8.0)
+    else:
+        window.notify(Sentence("Opened {scene}", scene=what))
     return ""
 
 

@@ -8,6 +8,7 @@ from physicslab.components import Transform, Velocity
 from physicslab.diagnostics import free_body
 from physicslab.diagnostics.present_forces import with_present_forces
 from physicslab.ecs.vector import Vector2
+from physicslab.languages.sentence import Sentence
 from physicslab.view.canvas.camera import Drawing
 from physicslab.view.canvas.quantities import quantity
 from physicslab.view.overlay import arrows
@@ -109,8 +110,10 @@ class Measured:
 
 
 _WIDTH = 2.6
+_FORCE = arrows.ArrowKind("Force", "force", arrows.Head.DOUBLE, _WIDTH)
 _KINDS = {
-    "field": arrows.ArrowKind("Force", "force", arrows.Head.DOUBLE, _WIDTH),
+    "field": _FORCE,
+    "joint": _FORCE,
     "normal": arrows.ArrowKind("Normal force", "normal_impulse", arrows.Head.DIAMOND, _WIDTH),
     "friction": arrows.ArrowKind("Friction", "friction_impulse", arrows.Head.OPEN, _WIDTH, dashed=True),
 }
@@ -147,4 +150,5 @@ def _draw(one: free_body.NamedForce, moved: Vector2, number: int, gauge: Gauge, 
     span = np.array([(one.force.x, -one.force.y)]) * (on.camera.scale / gauge.per_metre)
     arrows.draw_arrows(start, span, _KINDS[one.kind], on)
     x, y = (start + span)[0].tolist()
-    return Label((number, hash(one.name)), (x, y), [f"{one.name}: {quantity(one.force.magnitude, 'N')}"])
+    words = Sentence("{force}: {size}", force=one.name, size=quantity(one.force.magnitude, "N"))
+    return Label((number, hash(one.name)), (x, y), [words])

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from physicslab.languages.sentence import Sentence
 from physicslab.view.canvas.camera import Drawing
 from physicslab.view.canvas.canvas import Numbers, Points, Rect
 from physicslab.view.canvas.quantities import quantity
@@ -170,7 +171,8 @@ def _words_of(one: _Candidate, impulse_dt: float) -> list[str]:
             friction_impulse if friction_impulse > _ZERO_FRICTION_SHARE * sample["normal"] else 0.0
         )
         lines.append(f"friction {_impulse(friction_impulse, rate)}")
-        lines.append(f"{'slips' if one.slips else 'sticks'}, μ = {float(sample['friction']):.3g}")
+        how, mu = Sentence("slips" if one.slips else "sticks"), f"{float(sample['friction']):.3g}"
+        lines.append(Sentence("{how}, μ = {mu}", how=how, mu=mu))
     else:
         lines.append("μ = 0")
     return lines

@@ -12,14 +12,16 @@ _AXES = 3
 """Axes that a plot may have in each direction."""
 _ROUNDING = 1e-9
 """Share of a step by which a tick may lie beyond an end."""
+_DECIMALS = 6
+"""Up to so many decimals a number is written without a power of ten."""
 _APART = (3.5, 1.6)
 """Least distance between ticks across and along, in heights of the text."""
 
 
 def finish_axes(language: Language) -> list[str]:
-    """End the set-up of a plot's axes: their ticks have the decimal mark of a language.
+    """End the set-up of a plot's axes: ticks have as many decimals as their step, and a language's mark.
 
-    ImPlot writes the numbers of its own ticks with a point, so in other languages the ticks are given to it.
+    ImPlot writes the numbers of its own ticks with a point, each with the figures that it has.
 
     Returns
     -------
@@ -33,14 +35,13 @@ def finish_axes(language: Language) -> list[str]:
         for is_vertical in (False, True)
     }
     used = {name: axis for name, axis in axes.items() if axis.enabled}
-    if language.say(".") != ".":
-        for name, axis in used.items():
-            if axis.show_default_ticks:
-                most = max(round(axis.pixel_size() / (size * _APART[axis.vertical])), 2)
-                low, high = axis.range.min, axis.range.max
-                is_log = axis.scale == implot.Scale_.log10
-                ticks = dict(_powers(low, high) if is_log else _ticks(low, high, most))
-                implot.setup_axis_ticks(name, list(ticks), [language.decimal(one) for one in ticks.values()])
+    for name, axis in used.items():
+        if axis.show_default_ticks:
+            most = max(round(axis.pixel_size() / (size * _APART[axis.vertical])), 2)
+            low, high = axis.range.min, axis.range.max
+            is_log = axis.scale == implot.Scale_.log10
+            ticks = dict(_powers(low, high) if is_log else _ticks(low, high, most))
+            implot.setup_axis_ticks(name, list(ticks), [language.decimal(one) for one in ticks.values()])
     implot.setup_finish()
     return [axis.ticker.get_text(n) for axis in used.values() for n in range(axis.ticker.tick_count())]
 
@@ -49,13 +50,14 @@ def _ticks(low: float, high: float, most: int) -> Iterator[tuple[float, str]]:
     """Yield up to so many round numbers within a range, and their texts.
 
     >>> [text for _, text in _ticks(-0.21, 0.4, 4)], [text for _, text in _ticks(-12.5, -12.4989, 3)]
-    (['-0.2', '0', '0.2', '0.4'], ['-12.5', '-12.4995', '-12.499'])
+    (['-0.2', '0.0', '0.2', '0.4'], ['-12.5000', '-12.4995', '-12.4990'])
     """
     if not (math.isfinite(high - low) and high > low):
         return
     step = rounded_up((high - low) / most)
+    decimals = -math.floor(math.log10(step * (1.0 + _ROUNDING)))
     for k in range(math.ceil(low / step - _ROUNDING), math.floor(high / step + _ROUNDING) + 1):
-        yield k * step, f"{k * step:.7g}"
+        yield k * step, f"{k * step:z.{decimals}f}" if 0 <= decimals <= _DECIMALS else f"{k * step:.7g}"
 
 
 def _powers(low: float, high: float) -> Iterator[tuple[float, str]]:

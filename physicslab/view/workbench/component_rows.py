@@ -16,6 +16,7 @@ from physicslab.ecs.fields import LENGTH_LIMIT, Field
 from physicslab.ecs.quantity_text import points_text
 from physicslab.ecs.vector import Vector2
 from physicslab.history import AddComponent, Command, SetField
+from physicslab.languages.sentence import Sentence
 from physicslab.state.joint_rows import KINDS
 from physicslab.view.canvas.quantities import ROUNDING, without_rounding, without_turns
 from physicslab.view.controls.tool import ICONS
@@ -294,7 +295,7 @@ def _ends(world: World, entity: int, none: str) -> dict[int | None, str]:
 def _common(column: NDArray[Any]) -> Any:
     """Return the number that all have, or between which they are, in words."""
     low, high = column.min().item(), column.max().item()
-    return low if low == high else f"{low:.3g} to {high:.3g}"
+    return low if low == high else Sentence("{least} to {most}", least=f"{low:.3g}", most=f"{high:.3g}")
 
 
 def _with_mean(spec: Field, column: NDArray[Any]) -> Field:

@@ -12,6 +12,7 @@ from physicslab.components.layer import NONE
 from physicslab.components.made_of import SUBSTANCES
 from physicslab.diagnostics.joints import joint_states
 from physicslab.history import SetField
+from physicslab.languages.sentence import Sentence
 from physicslab.state.joint_rows import KINDS
 from physicslab.view.canvas.quantities import quantity
 from physicslab.view.controls import copies
@@ -202,6 +203,7 @@ def _of_space(ui: Ui, window: Window, pixel: tuple[float, float]) -> None:
     for drawn in GROUPS:
         if drawn.name in _PUT_DOWN:
             tool = DRAWING[drawn.name]
-            ui.item(f"{drawn.title} ...", choose_tool, tool, shown=f"{drawn.title} ...", tip=tool.usage)
+            shown = Sentence("{thing} ...", thing=Sentence(drawn.title))
+            ui.item(shown, choose_tool, tool, shown=shown, tip=tool.usage)
     ui.rule()
     ui.item("Select everything", select_all, shown="Select all", keys="Ctrl+A")

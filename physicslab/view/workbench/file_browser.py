@@ -61,7 +61,7 @@ class FileBrowser:
             if ui.button("Open") or entered:
                 window.do_next(file_actions.open_named, opening.text)
             imgui.same_line()
-            if ui.button("Do not open"):
+            if ui.button("Cancel"):
                 close()
 
     def _build_list(self, ui: Ui, window: Window, opening: Opening) -> Path | None:

@@ -97,7 +97,7 @@ def build_film(ui: Ui, world: World, window: Window) -> None:
             naming.write(f"{Path(naming.text).stem}{_KINDS[kind]}")
         entered = build_name(ui, "Film name", naming, _FILM, close)
         tip = "It plays as fast as time runs in the window now"
-        build_answers(ui, naming, ("Make the film", "No film"), entered, begin_film, close, tip)
+        build_answers(ui, naming, ("Make the film", "Cancel"), entered, begin_film, close, tip)
 
 
 # ---- what a session that ended without closing has left ----------------------------------------------------

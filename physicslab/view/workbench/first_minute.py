@@ -3,6 +3,7 @@
 import pygame
 from imgui_bundle import ImVec2, imgui
 
+from physicslab.languages.sentence import Sentence
 from physicslab.view.canvas.canvas import Rect
 from physicslab.view.controls import actions, commands, saving
 from physicslab.view.controls.tour import STEPS, next_step
@@ -107,7 +108,10 @@ def build_tour(ui: Ui, window: Window, free: Rect) -> int:
         imgui.set_cursor_pos(ImVec2(pad, pad))
         imgui.begin_group()
         imgui.align_text_to_frame_padding()
-        ui.text(f"{tour.number + 1} of {len(STEPS)}: {step.title}", ui.theme.heading)
+        heading = Sentence(
+            "{n} of {all}: {step}", n=tour.number + 1, all=len(STEPS), step=Sentence(step.title)
+        )
+        ui.text(heading, ui.theme.heading)
         ui.text(step.words, wrapped=True)
         ui.button("Skip this step", "", next_step)
         imgui.same_line()

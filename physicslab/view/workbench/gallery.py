@@ -87,7 +87,7 @@ class Gallery:
         ui.faint(hint, wrapped=False)
         every = [(source, known) for source in self._sources if (known := self._known(source)) is not None]
         tags = dict.fromkeys(tag for _, known in every for tag in known.tags)
-        for n, tag in enumerate(("", *sorted(tags, key=lambda tag: (tag != _OWN, tag)))):
+        for n, tag in enumerate(("", *sorted(tags, key=lambda tag: (tag != _OWN, ui.said(tag).casefold())))):
             if n:
                 ui.same_line_if_room(tag, end)
             if ui.button(f"Tag: {tag or 'all'}", shown=tag or "all", on=tag == self._tag):

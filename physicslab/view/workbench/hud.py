@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterable
 from itertools import product
 
 from physicslab.diagnostics.warnings import ModelWarning, find_warnings
+from physicslab.languages.sentence import Sentence
 from physicslab.theme import Colour, mixed
 from physicslab.view.canvas.canvas import Rect, TextStyle, overlap
 from physicslab.view.controls.actions import has_gravity
@@ -121,7 +122,8 @@ class Hud:
             found.append((window.filming.words, theme.accent))
         if window.pace.speed != 1.0:
             name = "SLOW MOTION" if window.pace.speed < 1.0 else "FAST MOTION"
-            found.append((f"{name} {window.pace.speed:g}x", theme.slow))
+            speed = f"{window.pace.speed:g}"
+            found.append((Sentence("{motion} {speed}x", motion=Sentence(name), speed=speed), theme.slow))
         if _is_planet_mode(world):
             found.append(("PLANET MODE", theme.planet))
         dropped = self._dropped.recent(window.pace.dropped, window.now)

@@ -109,14 +109,14 @@ def _build_table(ui: Ui, world: World, window: Window, rows: Any, size: ImVec2) 
 def _build_heading(ui: Ui, window: Window, n: int) -> None:
     """Build a heading; a click sorts by it, and a second one the other way round."""
     impacts, name = window.impacts, COLUMNS[n]
-    mark = "" if impacts.sorted_by != name else " (falling)" if impacts.falling else " (rising)"
+    mark = "" if impacts.sorted_by != name else "(falling)" if impacts.falling else "(rising)"
     head = ui.said(HEADS[n])
-    ui.words.append(head + ui.said(mark))
+    ui.words.append(f"{head} {ui.said(mark)}".strip())
     clicked, _ = imgui.selectable(f"{head}###{HEADS[n]} heading", impacts.sorted_by == name)
     ui.note(f"Sort by {HEADS[n].lower()}")
     if impacts.sorted_by == name:
         _draw_arrow(ui, upwards=not impacts.falling)
-    ui.tip(f"{_TIPS[n]}. Click to sort{mark}")
+    ui.tip(f"{_TIPS[n]}. Click to sort")
     if clicked:
         impacts.falling = not impacts.falling if impacts.sorted_by == name else n > 2
         impacts.sorted_by = name

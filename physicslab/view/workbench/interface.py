@@ -7,6 +7,7 @@ import pygame
 from imgui_bundle import imgui
 
 from physicslab.languages.language import language
+from physicslab.languages.sentence import Sentence
 from physicslab.view.canvas.canvas import Canvas, Rect
 from physicslab.view.controls.tools import TOOLS
 from physicslab.view.toolkit.early_keys import EarlyKeys
@@ -410,7 +411,8 @@ class Interface:
 
     def _build_counts(self, ui: Ui, figures: WorldFigures, window: Window) -> None:
         """Write the numbers that say how much there is to do."""
-        ui.row("Bodies", f"{figures.bodies}" + (f", {figures.asleep} asleep" if figures.asleep else ""))
+        asleep = Sentence("{bodies}, {asleep} asleep", bodies=figures.bodies, asleep=figures.asleep)
+        ui.row("Bodies", asleep if figures.asleep else f"{figures.bodies}")
         ui.row("Contacts", f"{figures.contacts}", "Pairs that touch", lesser=False)
         if window.level == "Engineer":
             ui.row("Candidate pairs", f"{figures.candidate_pairs}", "Pairs that are near each other")

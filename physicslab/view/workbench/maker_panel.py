@@ -67,9 +67,7 @@ def build_maker(ui: Ui, world: World, window: Window) -> None:
         for entry, why in refused.items():
             if entry not in _BLOCKS.values() and entry[1] not in ("let", "open"):
                 ui.refusal(why)
-        build_answers(
-            ui, making.naming, ("Make the lesson", "No lesson"), entered, actions.make_lesson, close
-        )
+        build_answers(ui, making.naming, ("Make the lesson", "Cancel"), entered, actions.make_lesson, close)
 
 
 def _build_opened(ui: Ui, world: World, window: Window, refused: dict[tuple[str, str], str]) -> None:

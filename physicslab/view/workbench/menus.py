@@ -226,7 +226,7 @@ def _build_key(ui: Ui, window: Window, control: Control, keys: str) -> None:
 
 def _keys(control: Control, window: Window) -> str:
     others = [key.capitalize() for key in control.also if key.isalpha()]
-    return ", ".join([label_of(control, window), *others])
+    return ", ".join(dict.fromkeys([label_of(control, window), *others]))
 
 
 def _width(lines: Sequence[tuple[str, str]], columns: int) -> float:

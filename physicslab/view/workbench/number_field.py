@@ -12,6 +12,7 @@ from imgui_bundle import ImVec2, imgui
 
 from physicslab.ecs.fields import Field, InvalidValue
 from physicslab.ecs.quantity_text import InvalidText, evaluate, evaluate_points
+from physicslab.languages.sentence import Sentence
 from physicslab.view.canvas.keyboard import held_keys
 from physicslab.view.toolkit.style import packed
 from physicslab.view.toolkit.ui import Ui
@@ -27,12 +28,12 @@ _FIGURES = 6
 """Figures to which a number is shown where there is room."""
 _PART_FIGURES = 4
 """Figures to which a part of a vector is shown."""
-_LEAST = "0.0"
+_LEAST = "-0.00"
 """Two fields in one line have room for at least this."""
 _TINY, _ABOUT_ZERO = 1e-3, "\N{ALMOST EQUAL TO}0"
 """Smaller numbers for which there is no room are shown as about zero."""
-_VARIOUS = "various"
-"""The text of a field for several bodies whose numbers differ."""
+_VARIOUS = "…"
+"""The text of a field for several bodies whose numbers differ, where there is no room for their span."""
 _LARGEST_ANGLE = 1e5
 """Larger angles are not shown in degrees as well [°]."""
 _HALF_TURN = 180.0
@@ -179,7 +180,7 @@ class NumberFields:
         """Build one field, and return why what was written in it is refused; empty while it is not."""
         draft = self._drafts.get(key)
         shown = zero if zero and value == 0.0 else _shown(value, spec, width)
-        if not isinstance(value, str):
+        if not isinstance(value, str) or isinstance(value, Sentence):
             shown = ui.said(shown)  # of a text what is written is its own
         wrong, lines = bool(draft and draft.refusal), min(spec.lines, _LINES_SHOWN)
         text, active = ui.field(key, draft.text if draft else shown, width, wrong=wrong, lines=lines)
@@ -337,5 +338,5 @@ def _finish(ui: Ui, unit: str, refusal: str) -> None:
     """Write the unit beside a field, and below it why what is written there is refused."""
     if unit:
         imgui.same_line(0.0, 0.4 * ui.size)
-        ui.faint(unit, wrapped=False)
+        ui.faint(ui.said(unit), wrapped=False)
     ui.refusal(refusal)

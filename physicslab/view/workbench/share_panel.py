@@ -30,7 +30,7 @@ def build_share(ui: Ui, world: World, window: Window) -> None:
             ui.faint("Predict, run, compare and answer in the browser; its solutions are in the page")
         else:
             _build_run(ui, world, window)
-        make, labels = share_actions.begin_sharing, ("Make the page", "No page")
+        make, labels = share_actions.begin_sharing, ("Make the page", "Cancel")
         build_answers(ui, sharing.naming, labels, entered, make, close)
 
 

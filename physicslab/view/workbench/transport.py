@@ -142,7 +142,8 @@ def build_history(ui: Ui, world: World, window: Window) -> None:
         if imgui.begin_child("entries", ImVec2(room.x, max(room.y - below, 3.0 * ui.size))):
             ui.selectable("As it was opened", _go_to, 0, on=done == 0, faint=False)
             for n, entry in enumerate(entries, start=1):
-                ui.selectable(f"{n}. {entry.words}", _go_to, n, on=n == done, faint=not entry.done)
+                line = f"{n}. {ui.said(entry.words)}"
+                ui.selectable(line, _go_to, n, on=n == done, faint=not entry.done)
         imgui.end_child()
         _build_branches(ui, window)
 
@@ -156,7 +157,7 @@ def _build_branches(ui: Ui, window: Window) -> None:
     ui.heading("Other branches")
     ui.tip("Edits and runs that a change in the past replaced; Ctrl+B switches from one to the next")
     for n, branch in enumerate(history.branches, start=1):
-        words = branch_words(branch, history.start)
+        words = ui.said(branch_words(branch, history.start))
         ui.selectable(f"{n}. {shortened(words, _LETTERS)}", switch, branch)
         ui.tip(words)
 

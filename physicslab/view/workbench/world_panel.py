@@ -236,7 +236,7 @@ def _build_gravity(ui: Ui, world: World, window: Window) -> None:
         now = "none"
     else:
         down = physics.gravity == Vector2(0.0, physics.gravity.y)
-        now = next((name for name, g in _PLANETS.items() if down and -physics.gravity.y == g), "own")
+        now = next((name for name, g in _PLANETS.items() if down and -physics.gravity.y == g), "custom")
     ui.lead("Gravity")
     chosen = ui.choice("Gravity", now, [*_PLANETS, "between bodies"], "Gravity: choose a planet")
     ui.rows["Gravity"] = gravity_in_words(world)
@@ -329,14 +329,20 @@ def build_settings(ui: Ui, numbers: NumberFields, world: World, window: Window) 
 
 def _cost(method: Integrator) -> str:
     """Return in words what a method costs, and what a shorter step gives."""
-    each = f"{method.evaluations} evaluation{'' if method.evaluations == 1 else 's'} of all forces a step"
+    many = "" if method.evaluations == 1 else "s"
+    each = Sentence(f"{{n}} evaluation{many} of all forces a step", n=method.evaluations)
     if not method.evaluations:
         return "Solved in closed form: the step is only how often the motion is shown."
     if method.chooses_steps:
-        return f"It costs at least {each}, and divides steps until it keeps to the tolerance."
-    less = f"half of it takes twice the time and leaves 1/{2**method.order:.0f} of the error"
-    kept = " Energy does not drift." if method.symplectic else " Energy drifts."
-    return f"It costs {each}; {less}.{kept}"
+        return Sentence(
+            "It costs at least {evaluations}, and divides steps until it keeps to the tolerance.",
+            evaluations=each,
+        )
+    return Sentence(
+        "It costs {evaluations}; half of it takes twice the time and leaves 1/{share} of the error. {energy}",
+        evaluations=each, share=2**method.order,
+        energy=Sentence("Energy does not drift." if method.symplectic else "Energy drifts."),
+    )  # fmt: skip
 
 
 def _build_electric_field(ui: Ui, numbers: NumberFields, world: World, window: Window) -> None:
