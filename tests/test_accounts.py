@@ -429,6 +429,22 @@ def test_a_damper_at_a_driven_plate_takes_what_its_drive_gives_too(
     assert abs(account.energy["numerical"]) < 1e-3 * abs(account.energy["damping"])
 
 
+@pytest.mark.parametrize("damping", [0.0, 2.0])
+def test_what_turns_a_point_mass_on_against_a_spring_is_driven(damping: float) -> None:
+    """A body without a Shape turns steadily: what keeps it so works against a spring beside its middle."""
+    world = with_simulation(empty_world(), integrator="leapfrog", contacts="soft", dt=1 / 480)
+    point = world.spawn(Transform((0, 0)), Velocity((1.0, 0.0), 5.0), Mass(2.0))
+    disc = circle(world, (1, 1), radius=0.2)
+    circle(world, (3, 1), radius=0.2)
+    world.spawn(
+        Spring(a=point, b=disc, anchor_a=(0.3, 0.0), rest_length=0.5, stiffness=20.0, damping=damping)
+    )
+    world.run(seconds=1.0)
+    account = measure_account(world)
+    assert abs(account.energy["hand"]) > 0.5
+    assert abs(account.energy["numerical"]) < 2e-3 * abs(account.energy["hand"])
+
+
 @pytest.mark.parametrize("cause", ["fields", "damping"])
 def test_what_a_pool_gives_and_takes_by_kicks_is_that_of_fields_and_of_damping(cause: str) -> None:
     """A box comes in by a side wall, where the pressure of the fluid works; drag is of the first order."""

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import pytest
 from desk import Desk, bits, empty_world
 
 from physicslab import World, load_scene
-from physicslab.components import Drag, Mass, Material, Shape, Spring, Transform, Velocity
+from physicslab.components import Drag, Mass, Material, Pin, Rod, Rope, Shape, Spring, Transform, Velocity
 from physicslab.diagnostics.free_body import forces_on, last_step, net_force
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.vector import Vector2
@@ -45,6 +47,26 @@ def test_impacts_are_among_the_impulses_and_not_in_m_a() -> None:
     assert step.impulses[name].y == pytest.approx(1.8 * 2.0 * 4.1, rel=0.02)
     assert step.difference.magnitude < 1e-12 * step.change.magnitude
     assert step.inertia.y == pytest.approx(-2.0 * 9.81, rel=1e-9)
+
+
+@pytest.mark.parametrize("contacts", ["rigid", "soft"])
+@pytest.mark.parametrize("joint", [Rod, Rope, Pin])
+@pytest.mark.parametrize("beside", [False, True])
+def test_the_impulse_of_a_joint_is_all_of_it(joint: Any, contacts: Any, beside: bool) -> None:
+    world = World(*standard_systems(), simulation=SimulationConfig(contacts=contacts, dt=1e-3))
+    bob = world.spawn(Transform((1.0, 0.0)), Velocity((0.0, -2.0)), Mass(1.5), Shape.circle(0.1))
+    if beside:  # so that the step is not that of forces alone
+        world.spawn(Transform((3.0, 0.0)), Velocity((0.0, -2.0)), Mass(1.5), Shape.circle(0.1))
+        world.spawn(Transform((2.0, -9.0)), Shape.box(9.0, 1.0))
+    places = {"anchor_a": (-1.0, 0.0), "anchor_b": (0.0, 0.0)} if joint is Pin else {}
+    world.spawn(joint(a=bob, **places), name="held")
+    for _ in range(300):
+        world.step()
+    step = last_step(world, bob)
+    assert step is not None
+    (pull,) = (impulse for name, impulse in step.impulses.items() if name != "weight")
+    assert pull.magnitude > 5.0 * step.dt
+    assert step.difference.magnitude < 0.01 * pull.magnitude
 
 
 def test_damping_drag_and_springs_are_accounted_for_to_the_order_of_the_step() -> None:

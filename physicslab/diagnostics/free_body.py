@@ -18,7 +18,7 @@ from physicslab.state.masses import quiet
 from physicslab.stepping.forces import forces_by_system
 from physicslab.world import World
 
-type Kind = Literal["field", "normal", "friction"]
+type Kind = Literal["field", "joint", "normal", "friction"]
 
 _DAMPING, _WALL = Sentence("damping"), Sentence("the wall")
 _NAMES = {
@@ -54,7 +54,7 @@ class NamedForce:
     place : Vector2
         Where it acts [m].
     kind : str
-        ``"field"``, or for a contact ``"normal"`` or ``"friction"``.
+        ``"field"``, ``"joint"``, or for a contact ``"normal"`` or ``"friction"``.
     pair : Pair, optional
         The pair of surfaces of a normal force.
     """
@@ -90,7 +90,7 @@ def forces_on(world: World, entity: int) -> tuple[NamedForce, ...]:
     for number, pull in joint_figures.forces_on(now, row).items():
         joint = now.joints.joints[number]
         at = _end(now, joint, row)
-        found.append(NamedForce(_joint_name(world, joint), Vector2(*pull.tolist()), at, "field"))
+        found.append(NamedForce(_joint_name(world, joint), Vector2(*pull.tolist()), at, "joint"))
     for contact in contacts_of(now, entity):
         on_b = contact.b == entity
         other = world.label(contact.a if on_b else contact.b) if contact.a and contact.b else _WALL
@@ -139,7 +139,8 @@ class LastStep:
         """The change of momentum that the impulses do not account for [N s].
 
         Impulses of springs, drag and damping are the mean of those before and after the step times its
-        length, those of contacts the last substep's: where forces change within it, the sum is no exact one.
+        length, those of contacts and joints the last substep's: where forces change within it, the sum is no
+        exact one.
         """
         return self.change - sum(self.impulses.values(), Vector2())
 

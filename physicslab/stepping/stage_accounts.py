@@ -74,11 +74,11 @@ class StageAccounts:
         self._damps = springs and _has_dampers(state)
         self._dampers = np.zeros_like(state.bodies.pull)
         bodies = state.bodies
-        driven = state.table(Velocity).present & (bodies.inverse_mass == 0.0) & ~bodies.sub_integrated
-        self._driven = driven if others and driven.any() else None
+        driven = _driven(state, others)
+        self._driven = driven if driven.any() else None
         self._start: tuple[NDArray[np.float64], NDArray[np.float64]]
         self._met: tuple[NDArray[np.float64], NDArray[np.float64]]
-        self._before = bodies.packed[2, : 2 * len(driven)].reshape(-1, 2)
+        self._before = bodies.packed[2, : 2 * len(bodies.inverse_mass)].reshape(-1, 2)
 
     @property
     def notes_forces(self) -> bool:
@@ -168,8 +168,7 @@ class StageAccounts:
             for account, power in _powers(state, force, q, v):
                 sums[account, ENERGY] += h * power
         if self._driven is not None:
-            rows = np.concatenate((np.repeat(self._driven, 2), self._driven))
-            pull = bodies.pull[rows]
+            rows, pull = self._driven, bodies.pull[self._driven]
             for force in self._free:
                 if force.couples_nothing:  # whatever it gives to a driven body comes to no other
                     pull -= self._pulls[force][rows]
@@ -213,6 +212,17 @@ def _places(state: State) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return copies of the positions (rows, 2) [m] and angles [rad] of all bodies."""
     transform = state.table(Transform)
     return transform["position"].copy(), transform["angle"].copy()
+
+
+def _driven(state: State, forces: Sequence[ForceSystem]) -> NDArray[np.bool_]:
+    """Return the coordinates (3 rows,) that go on steadily whatever ``forces`` act on them."""
+    bodies, turned = state.bodies, np.zeros(len(state.entity_index), np.bool_)
+    moves = state.table(Velocity).present & ~bodies.sub_integrated & bool(forces)
+    for force in forces:
+        turned[force.turned(state)] = True
+    shifted = moves & (bodies.inverse_mass == 0.0)
+    turned = moves & (bodies.inverse_inertia == 0.0) & (turned | shifted)
+    return np.concatenate((np.repeat(shifted, 2), turned))
 
 
 def _working(

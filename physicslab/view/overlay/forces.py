@@ -110,8 +110,10 @@ class Measured:
 
 
 _WIDTH = 2.6
+_FORCE = arrows.ArrowKind("Force", "force", arrows.Head.DOUBLE, _WIDTH)
 _KINDS = {
-    "field": arrows.ArrowKind("Force", "force", arrows.Head.DOUBLE, _WIDTH),
+    "field": _FORCE,
+    "joint": _FORCE,
     "normal": arrows.ArrowKind("Normal force", "normal_impulse", arrows.Head.DIAMOND, _WIDTH),
     "friction": arrows.ArrowKind("Friction", "friction_impulse", arrows.Head.OPEN, _WIDTH, dashed=True),
 }
