@@ -553,17 +553,18 @@ def falling_box() -> World:
 def test_a_call_that_may_be_made_once_more_copies_no_table_of_impacts(longest: float, compiles: bool) -> None:
     """It has 34 MB, and to copy it took longer than an interpreted step of a few bodies."""
     expected, world, late = falling_box(), falling_box(), []
+    jitted: Any = soft.advance
     for _ in range(3):
         expected.step()
-    overloads = dict(soft.advance.overloads)
+    overloads = dict(jitted.overloads)
 
     def compile_now(kernel: Any) -> None:
         late.append(kernel)
         interpreter._take_back(kernel, overloads)
 
     world.synchronise()
-    interpreter._set_aside(soft.advance)
-    install(soft.advance)
+    interpreter._set_aside(jitted)
+    install(jitted)
     interpreter.limit(lambda _: longest, compile_now)
     ask_before_compiling(lambda missing: missing)
     tracemalloc.start()
@@ -575,9 +576,9 @@ def test_a_call_that_may_be_made_once_more_copies_no_table_of_impacts(longest: f
         tracemalloc.stop()
         ask_before_compiling(None)
         interpreter.unlimited()
-        interpreter.uninstall(soft.advance)
+        interpreter.uninstall(jitted)
         if not late:
-            interpreter._take_back(soft.advance, overloads)
+            interpreter._take_back(jitted, overloads)
     assert bool(late) == compiles
     assert bits(world) == bits(expected)
     assert world.contacts.impacts.tobytes() == expected.contacts.impacts.tobytes() != b""
