@@ -23,6 +23,7 @@ from physicslab.components import (
     Mass,
     Material,
     Medium,
+    Pin,
     Shape,
     Spring,
     Transform,
@@ -463,6 +464,19 @@ def test_what_a_pool_gives_and_takes_by_kicks_is_that_of_fields_and_of_damping(c
         errors.append(abs(account.energy["numerical"]))
     assert errors[0] < 0.03 * abs(account.energy[cause])
     assert errors[1] < 0.35 * errors[0]
+
+
+def test_a_pin_that_is_closed_in_a_pool_is_no_motion_that_the_fluid_slows() -> None:
+    errors = []
+    for dt in (1 / 240, 1 / 960):
+        world = with_simulation(empty_world(), integrator="leapfrog", contacts="soft", dt=dt)
+        world.spawn(Transform((0, -1)), Shape.box(9.0, 4.0), Medium(density=25.0, viscosity=0.7))
+        plate = box(world, (-1, 0), width=0.4, height=0.3, mass=0.7)
+        circle(world, (3, 0), radius=0.2)
+        world.spawn(Pin(a=plate, anchor_a=(0.0, 0.0), anchor_b=(0.0, 0.0)))
+        world.run(seconds=0.2)
+        errors.append(abs(measure_account(world).energy["numerical"]))
+    assert errors[1] < min(0.5 * errors[0], 0.1)
 
 
 def test_at_its_terminal_speed_a_body_gives_all_its_weight_does_to_drag() -> None:

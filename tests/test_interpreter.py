@@ -10,6 +10,7 @@ import re
 import subprocess
 import sys
 import time
+import tracemalloc
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import replace
@@ -540,6 +541,48 @@ def test_what_would_be_interpreted_for_too_long_is_compiled_first(
         interpreter.uninstall(jitted)
     assert late == [jitted]
     assert bits(world) == bits(expected)
+
+
+def falling_box() -> World:
+    world = scene(FLOOR, body(0.0, 0.52, "box", Velocity={"linear": [0.0, -1.0]}), contacts="soft")
+    world.contacts.read = True  # as in a window
+    return world
+
+
+@pytest.mark.parametrize(("longest", "compiles"), [(1e-9, True), (60.0, False)])
+def test_a_call_that_may_be_made_once_more_copies_no_table_of_impacts(longest: float, compiles: bool) -> None:
+    """It has 34 MB, and to copy it took longer than an interpreted step of a few bodies."""
+    expected, world, late = falling_box(), falling_box(), []
+    jitted: Any = soft.advance
+    for _ in range(3):
+        expected.step()
+    overloads = dict(jitted.overloads)
+
+    def compile_now(kernel: Any) -> None:
+        late.append(kernel)
+        interpreter._take_back(kernel, overloads)
+
+    world.synchronise()
+    interpreter._set_aside(jitted)
+    install(jitted)
+    interpreter.limit(lambda _: longest, compile_now)
+    ask_before_compiling(lambda missing: missing)
+    tracemalloc.start()
+    try:
+        for _ in range(3):
+            world.step()
+        _, most = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+        ask_before_compiling(None)
+        interpreter.unlimited()
+        interpreter.uninstall(jitted)
+        if not late:
+            interpreter._take_back(jitted, overloads)
+    assert bool(late) == compiles
+    assert bits(world) == bits(expected)
+    assert world.contacts.impacts.tobytes() == expected.contacts.impacts.tobytes() != b""
+    assert most < 0.1 * world.contacts.log.nbytes
 
 
 @pytest.mark.parametrize(

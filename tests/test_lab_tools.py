@@ -134,11 +134,12 @@ def test_the_hand_presses_nothing_through_a_floor_and_takes_nothing_beyond_the_w
 def test_nothing_is_made_where_it_would_overlap_or_beyond_the_walls() -> None:
     desk = Desk(empty_world(gravity=(0, 0), bounds=(-2.0, -2.0, 2.0, 2.0)))
     box(desk.world, (0, 0), width=1.0, height=1.0, static=True)
-    for x, y in ((0.55, 0.0), (2.5, 0.0), (1.95, 1.0)):
+    why = "no room here", "beyond the walls", "beyond the walls"
+    for (x, y), reason in zip(((0.55, 0.0), (2.5, 0.0), (1.95, 1.0)), why, strict=True):
         desk.press(x, y, "right")
         desk.release(x, y, "right")
         desk.frames()
-        assert len(desk.world.entities()) == 1 and "no room" in desk.window.notice
+        assert len(desk.world.entities()) == 1 and reason in desk.window.notice
     desk.press(1.2, 1.2)
     desk.release(1.2, 1.2)
     desk.frames()
@@ -158,7 +159,7 @@ def test_undo_redo_and_the_time_line_give_the_bits_of_the_run() -> None:
     desk.press(3.0, 3.0)
     desk.release(3.0, 3.0)
     desk.frames(20)
-    assert [entry.words for entry in history.entries][1] == "made: circle" and history.step_count == 60
+    assert [entry.words for entry in history.entries][1] == "made circle" and history.step_count == 60
     for step in (7, 31, 2, 40):
         actions.seek(desk.world, desk.window, step)
         if step < 40:

@@ -2,13 +2,14 @@
 
 import pygame
 import pytest
-from desk import SETTLED, Desk, click, empty_world, point, sized, tap
+from desk import SETTLED, Desk, click, click_at, empty_world, point, sized, tap
 
 from physicslab.components import Mass, Shape, Transform, Velocity
 from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import load_scene
 from physicslab.languages.language import language
 from physicslab.languages.sentence import Sentence
+from physicslab.prefabs import box
 from physicslab.view.canvas.quantities import vector_quantity
 from physicslab.view.controls.file_actions import open_scene
 from physicslab.view.toolkit.axes import _ticks
@@ -112,3 +113,27 @@ def test_what_a_method_costs_is_said_in_the_language() -> None:
     desk.frames(SETTLED)
     costs = "Es kostet 1 Auswertung aller Kräfte je Schritt; die halbe Schrittweite braucht doppelt so lange"
     assert any(words.startswith(costs) and words.endswith("driftet nicht.") for words in desk.ui.words)
+
+
+@pytest.mark.parametrize(
+    ("place", "reason"), [((0.0, 0.0), "hier ist kein Platz"), ((0.0, 2.9), "es ragte durch die Wände")]
+)
+def test_why_nothing_is_made_is_said_in_the_language_and_as_a_refusal(
+    place: tuple[float, float], reason: str
+) -> None:
+    desk = sized((1280, 720), empty_world(bounds=(-5.0, -3.0, 5.0, 3.0)))
+    for x in (-1.1, 1.1):
+        box(desk.world, (x, 0.0), width=2.0, height=2.0, static=True)
+    desk.frames(SETTLED)
+    click_at(desk, desk.pixel(*place), "right")
+    assert language("de").reword(desk.window.notice) == f"Kasten: {reason}"
+    assert desk.window.notice_failed
+
+
+def test_impacts_are_counted_in_the_language() -> None:
+    desk = sized((1280, 720), load_scene("carts"))
+    desk.window.language = "de"
+    tap(desk, "z")
+    desk.frames(90)
+    assert len(desk.window.impacts.records) == 1
+    assert "1 Stoß" in desk.ui.words

@@ -27,6 +27,7 @@ from physicslab.kernels import compiler, loading
 from physicslab.kernels.python_equivalents import Records
 from physicslab.kernels.python_fallback import Overdue, patience
 from physicslab.kernels.python_fallback import fallback_of as fallback_of
+from physicslab.kernels.records import IMPACT
 
 _forced = os.environ.get("PHYSICSLAB_INTERPRET", "0") not in ("", "0")
 
@@ -218,10 +219,15 @@ def _in_time(jitted: Any, taken: list[Any], longest: float) -> Any:
 
 
 def _arrays(arguments: tuple[Any, ...]) -> Iterator[NDArray[Any]]:
-    """Yield the arrays among arguments, and within tuples of them."""
+    """Yield the arrays that kernels read among arguments, and within tuples of them.
+
+    Impacts are only written, by a call that is made once more in the same places: to copy their table took
+    longer than a step.
+    """
     for argument in arguments:
         if isinstance(argument, np.ndarray):
-            yield argument
+            if argument.dtype is not IMPACT:
+                yield argument
         elif isinstance(argument, tuple):
             yield from _arrays(argument)
 

@@ -76,6 +76,7 @@ class StageAccounts:
         bodies = state.bodies
         driven = _driven(state, others)
         self._driven = driven if driven.any() else None
+        self._before_kicks = np.zeros(0)
         self._start: tuple[NDArray[np.float64], NDArray[np.float64]]
         self._met: tuple[NDArray[np.float64], NDArray[np.float64]]
         self._before = bodies.packed[2, : 2 * len(bodies.inverse_mass)].reshape(-1, 2)
@@ -91,8 +92,8 @@ class StageAccounts:
         return self.notes_forces or self._driven is not None
 
     def begin_substep(self, state: State) -> None:
-        """Note where bodies are."""
-        self._start = _places(state)
+        """Note where bodies are, and how they move."""
+        self._start, self._before_kicks = _places(state), _speeds(state)
 
     def note_force(self, system: System, before: NDArray[np.float64], state: State) -> None:
         """Note the pull of a force that is booked by itself; ``before`` (3 rows,) is that of those before."""
@@ -159,20 +160,27 @@ class StageAccounts:
         free = (bodies.awake_inverse_mass > 0.0)[:, None]
         state.account.sums[OVERLAP, ENERGY] += stored + float(((bodies.force - weight) * way * free).sum())
 
-    def book_way(self, state: State, h: float) -> None:
-        """Book the work of forces along the way of a substep of ``h`` seconds, and that of what drives."""
+    def book_way(self, state: State) -> None:
+        """Book the work of forces along the way of the substep, and that of what drives against them."""
         bodies, sums, way = state.bodies, state.account.sums, self._way(state, self._start)
         self._book_work(state, ~bodies.sub_integrated, way)
-        for force, (position, angle) in self._working.items():
-            q, v = np.concatenate((position.ravel(), angle, (state.time,))), np.append(way / h, 0.0)
-            for account, power in _powers(state, force, q, v):
-                sums[account, ENERGY] += h * power
         if self._driven is not None:
             rows, pull = self._driven, bodies.pull[self._driven]
             for force in self._free:
                 if force.couples_nothing:  # whatever it gives to a driven body comes to no other
                     pull -= self._pulls[force][rows]
             sums[HAND, ENERGY] -= float(pull @ way[rows])
+
+    def book_works(self, state: State, h: float) -> None:
+        """Book what forces that store energy give and take besides, by the mean velocities in ``h`` seconds.
+
+        By the way of the bodies it would be too much where joints or overlaps put them elsewhere.
+        """
+        for force, (position, angle) in self._working.items():
+            q = np.concatenate((position.ravel(), angle, (state.time,)))
+            v = np.append(0.5 * (self._before_kicks + _speeds(state)), 0.0)
+            for account, power in _powers(state, force, q, v):
+                state.account.sums[account, ENERGY] += h * power
 
     def begin_impacts(self, state: State) -> None:
         """Note where bodies of a flow are before impacts at their own times move them."""
@@ -212,6 +220,12 @@ def _places(state: State) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return copies of the positions (rows, 2) [m] and angles [rad] of all bodies."""
     transform = state.table(Transform)
     return transform["position"].copy(), transform["angle"].copy()
+
+
+def _speeds(state: State) -> NDArray[np.float64]:
+    """Return the velocities [m/s], and then the angular velocities [rad/s], of all bodies (3 rows,)."""
+    velocity = state.table(Velocity)
+    return np.concatenate((velocity["linear"].ravel(), velocity["angular"]))
 
 
 def _driven(state: State, forces: Sequence[ForceSystem]) -> NDArray[np.bool_]:

@@ -120,7 +120,7 @@ class SubstepParts:
         """Add a stage of the substep; return why some of it is Python's, if it is."""
         systems, split, accounts, reason = self._schedule.at(stage), self.split, self.accounts, ""
         if stage is Stage.RELAX and accounts.follows_way:
-            self._hook(accounts.book_way)
+            self._hook(lambda state, h: accounts.book_way(state))
         if stage is Stage.FORCE:
             reason = self._add_forces(state, systems, share)
         elif stage is Stage.PREDICT:
@@ -133,6 +133,8 @@ class SubstepParts:
             if flown:
                 self._hook(lambda state, h: accounts.begin_impacts(state))
             reason = self._add_systems(state, stage, systems, share)
+            if stage is Stage.RELAX and accounts.notes_forces:
+                self._hook(accounts.book_works)
             if flown:
                 self._hook(lambda state, h: accounts.book_impacts(state))
         if split is not None and stage is Stage.DRIFT:

@@ -17,6 +17,7 @@ from physicslab.ecs.fields import InvalidValue
 from physicslab.ecs.quantity_text import InvalidText
 from physicslab.ecs.vector import Vector2
 from physicslab.history import Command, Group, Spawn
+from physicslab.languages.sentence import Sentence
 from physicslab.view.controls.measure import DOMINOES, HANGING, LENGTH, Measure
 from physicslab.view.controls.picking import body_at
 from physicslab.view.controls.polygons import MOST, is_stroke, simplified
@@ -313,10 +314,11 @@ def _build(
     except ValueError as error:  # no outline
         refused = str(error)
     if refused:
-        window.notify(f"{drawn.title}: {refused}")
+        said = Sentence("{thing}: {reason}", thing=Sentence(drawn.title), reason=refused)
+        window.notify(said if isinstance(refused, Sentence) else str(said), failed=True)
         return False
     window.spawned += 1
-    words = f"poured {len(places)} discs" if drawn.pours else f"made: {drawn.title.lower()}"
+    words = f"poured {len(places)} discs" if drawn.pours else f"made {drawn.title.lower()}"
     window.edits.do(Group(words, made))
     if drawn.pours:
         window.notify(_number_of_discs(len(places)))

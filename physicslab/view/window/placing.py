@@ -13,6 +13,7 @@ from physicslab.contacts import outlines
 from physicslab.contacts.outlines import Outlines, overlap, overlapping
 from physicslab.ecs.component import Component
 from physicslab.ecs.vector import Vector2
+from physicslab.languages.sentence import Sentence
 from physicslab.state.solid import may_touch, solid_rows
 from physicslab.view.canvas.camera import Camera
 from physicslab.view.picture.backdrop import grid_spacing
@@ -26,7 +27,7 @@ _SIDES = 4
 """How many bodies it is moved away from, one after the other."""
 _FOOT = 0.5
 """How far from what is below the foot of something may be put down to stand on it [m]."""
-_BEYOND = "there is no room beyond the walls"
+_BEYOND, _NO_ROOM = Sentence("it would reach beyond the walls"), Sentence("there is no room here")
 _STRIDE, _MAX_STRIDES, _HALVINGS = 0.1, 64, 10
 """A way is looked at every so many metres, at so many places at most, and then more closely."""
 
@@ -45,7 +46,7 @@ def refused_place(world: World, wanted: Outlines) -> str:
     for n in range(len(wanted.place)):
         for other in overlapping(wanted, n, others):
             if overlap(wanted, n, others, int(other))[0] > _ALLOWED:
-                return "there is no room here"
+                return _NO_ROOM
     return ""
 
 

@@ -79,7 +79,7 @@ def _build_head(ui: Ui, world: World, window: Window) -> None:
     ui.same_line_if_room("CSV")
     table, tip = partial(impact_table_csv, world, window.impacts.records), "Write all of them to a file"
     ui.button("CSV of impacts", tip, save_table, "impacts", table, shown="CSV", enabled=count > 0)
-    words = f"{count} impact{'' if count == 1 else 's'}"
+    words = ui.language.say_count("{n} impact", "{n} impacts", count)
     ui.same_line_if_room(words)
     ui.faint(words, wrapped=False)
 
