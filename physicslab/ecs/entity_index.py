@@ -194,7 +194,8 @@ class EntityIndex:
 
     def rows_of(self, entities: NDArray[np.int64]) -> NDArray[np.int64]:
         """Return the rows (n,) of entities (n,), -1 where there is no such entity; 0 is the world's."""
-        known = np.clip(entities, 0, self.newest)
+        known = np.maximum(entities, 0)
+        np.minimum(known, self.newest, out=known)  # clip takes three times as long for a few
         return np.where(known == entities, self.lookup[known], -1)
 
     def table(self, component: type[Any]) -> Table:

@@ -131,7 +131,7 @@ class EventDriven(Stepper):
         start = [column.copy() for column in motion_of(state)]
         collisions, logged = state.collisions, state.contacts.logged
         booked, why, begun = state.account.sums.copy(), events.CAME_TO_REST, 0.0
-        if self._ballistic[_held(state)].any():
+        if not self._is_listed(state) and self._ballistic[_held(state)].any():
             return 0, why, 0.0
         while steps:
             self._recall_remainders(state)
@@ -172,10 +172,14 @@ class EventDriven(Stepper):
         position, velocity = state.table(Transform)["position"], state.table(Velocity)["linear"]
         return position.take(self._moving, axis=0).ravel(), velocity.take(self._moving, axis=0).ravel()
 
+    def _is_listed(self, state: State) -> bool:
+        """Whether it has made the last step itself, after which no body is held."""
+        return self._listed == state.steps and not state.contacts.stale
+
     def _begin(self, state: State) -> None:
         """List the pairs where others have made the last step, and clear the impacts of that step."""
         contacts = state.contacts
-        if contacts.stale or self._listed != state.steps:
+        if not self._is_listed(state):
             list_all(state, self._pairs, len(self._pairs))
             contacts.manifolds["count"][: contacts.recorded] = 0
             self._listed = state.steps
