@@ -96,6 +96,8 @@ class Rigid(Stepper):
         self._made_of: object = None
         self._resting: tuple[object, ...] | None = None
         self._laws: tuple[Any, ...] = ()
+        self._scene: tuple[Any, ...] = ()
+        self._unedited = False
         self._unmoved: NDArray[np.int64] = np.zeros(0, np.int64)
         self.energetic_impacts = self.restitutions_lowered = self.by_impulses = 0
         self.why_impulses, self.energy_added = "", 0.0
@@ -121,15 +123,26 @@ class Rigid(Stepper):
         """Whether no force is one in Python, which may depend on anything, and the next step is its own."""
         return self._goes_on and not self._ode.interpreted
 
+    def repeat(self, state: State, h: float, steps: int) -> Advance:
+        """Make steps as in the last call, under its laws."""
+        self._unedited = True
+        try:
+            return self.advance(state, h, steps)
+        finally:
+            self._unedited = False
+
     def advance(self, state: State, h: float, steps: int) -> Advance:
         """Make the steps, or those before the first that it cannot make and is not ready for.
 
         In a scene of impacts it ends where no body is held by another: the next step may be a flight.
         """
         began, parts = time.perf_counter_ns(), divisions(state, h)
-        self._ode.gather(state)
-        put_together(state, self._schedule.forces, self._ode)
-        scene = self._scene(state)
+        if self._ode.gather(state, unedited=self._unedited):
+            self._ode.set_going()
+        else:
+            put_together(state, self._schedule.forces, self._ode)
+            self._scene = self._present_scene(state)
+        scene = self._scene
         figures, last, made, at = self._figures(state, h), None, 0, state.time
         rests = figures is not None and figures == self._resting
         while made < steps and (self._goes_on or not made):
@@ -232,7 +245,7 @@ class Rigid(Stepper):
         step.impacts = impacts
         return step
 
-    def _scene(self, state: State) -> tuple[Any, ...]:
+    def _present_scene(self, state: State) -> tuple[Any, ...]:
         """Return what the kernels take of the state, beside the state of motion."""
         material, velocity = state.table(Material), state.table(Velocity)
         bodies, ode = state.bodies, self._ode
