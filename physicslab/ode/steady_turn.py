@@ -25,6 +25,8 @@ def turn_steadily(state: State, rows: NDArray[np.int64], span: float) -> None:
     """Turn bodies (rows,) through ``span`` seconds; what damping takes of that is booked."""
     transform, velocity, c = state.table(Transform), state.table(Velocity), state.physics.angular_damping
     spin = velocity["angular"][rows]
+    if not spin.any():
+        return
     (transform["angle"][rows],), (velocity["angular"][rows],) = steady_turn(state, rows, np.array([span]))
     if c:
         inverse = state.bodies.inverse_inertia[rows]
