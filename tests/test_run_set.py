@@ -287,6 +287,12 @@ def test_every_that_is_no_multiple_of_a_step_takes_the_step_after_it(
     assert times == pytest.approx([0.0, 4 / 60, 8 / 60, 11 / 60, 12 / 60], abs=1e-12)
 
 
+@pytest.mark.parametrize("every", ["1", "1e300", "1e308"])
+def test_every_longer_than_the_run_keeps_its_ends(every: str, capsys: pytest.CaptureFixture[str]) -> None:
+    spaced = rows(capsys, "drop", "--steps", "4", "--every", every)
+    assert sorted({float(row["time [s]"]) for row in spaced}) == [0.0, 4 / 60]
+
+
 def test_every_shorter_than_a_step_takes_every_step(capsys: pytest.CaptureFixture[str]) -> None:
     assert rows(capsys, "drop", "--steps", "5", "--every", "1e-9") == rows(capsys, "drop", "--steps", "5")
 

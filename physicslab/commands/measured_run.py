@@ -130,7 +130,7 @@ class MeasuredRun:
 
     def _kept_stride(self, dt: float) -> int:
         """Return how many steps are made between two states that are kept, where that is a whole number."""
-        steps = round(self._every / dt)
+        steps = round(min(self._every / dt, 1e15))  # the quotient of both may be infinite
         return steps if steps > 1 and abs(steps * dt - self._every) < _ON_TIME * dt else 1
 
     @property

@@ -11,7 +11,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.export.gif import LARGEST_RATE, GifWriter
+from physicslab.export.gif import LARGEST_RATE, SMALLEST_RATE, GifWriter
 from physicslab.files.replace import check_writable, replacing
 
 
@@ -135,7 +135,7 @@ class Film:
     size : tuple of two ints
         Width and height of all pictures [px].
     rate : float
-        Pictures a second; of a GIF at most 50.
+        Pictures a second, at least 0.002; of a GIF at most 50.
 
     Attributes
     ----------
@@ -145,7 +145,8 @@ class Film:
     Raises
     ------
     NoEncoder, ValueError
-        If it is an MP4 film and there is no ffmpeg; if the rate is too high, or the ending none of those.
+        If it is an MP4 film and there is no ffmpeg; if the rate is too high or too low, or the ending none of
+        those.
     OSError
         If the file cannot be written.
     """
@@ -174,6 +175,10 @@ class Film:
             raise ValueError(f"the name of a film ends in {' or '.join(ENDINGS)}")
         if ending == ".gif" and rate > LARGEST_RATE:
             raise ValueError(f"a GIF film has at most {LARGEST_RATE:g} pictures a second, not {rate:.6g}")
+        if rate < SMALLEST_RATE:
+            raise ValueError(
+                f"a film has at least {SMALLEST_RATE:g} pictures a second, not {rate:.6g}: see --fps"
+            )
         if ending == ".mp4":
             check_encoder()
         check_writable(path)

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 from physicslab.kernels import load
 from physicslab.kernels.lzw import CODES, pack_lzw
 
-LARGEST_RATE = 50.0
-"""Pictures a second: delays are whole hundredths of a second, and players take 1 for 10."""
+SMALLEST_RATE, LARGEST_RATE = 0.002, 50.0
+"""Pictures a second: delays are whole hundredths, less than 65,536 of them, and players take 1 for 10."""
 _SEE_THROUGH = 0
 """The colour of pixels that stay as they are."""
 _BLOCK = 255
@@ -35,7 +35,7 @@ class GifWriter:
     size : tuple of two ints
         Width and height of all pictures [px], up to 65,535.
     rate : float
-        Pictures a second, at most ``LARGEST_RATE``.
+        Pictures a second, from ``SMALLEST_RATE`` to ``LARGEST_RATE``.
     """
 
     def __init__(self, file: BinaryIO, size: tuple[int, int], rate: float) -> None:
