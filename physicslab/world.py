@@ -141,11 +141,10 @@ class World(Facade):
         if not self.steps and self._mark is None and self.islands.divides:
             self.mark()
         repeat, self._repeat = self._repeat, None
-        made = repeat.make(self, self._motion, steps) if repeat is not None and repeat.h == h else None
-        if made:
-            return self._count(*made)
+        if repeat is not None and not (repeat.h == h and repeat.stepper.ready(self, h)):
+            repeat = None
         try:
-            return self.attempt(h, steps, 1.0)
+            return self.attempt(h, steps, 1.0, repeat)
         except Overloaded as found:
             if not self.islands.divides:
                 raise  # the world that this one is an island of divides the step
@@ -163,26 +162,23 @@ class World(Facade):
         finally:
             self.time = start
 
-    def attempt(self, h: float, steps: int, bears: float) -> int:
-        """Advance; raise ``Overloaded`` where that ends with a load on joints beyond ``bears``."""
+    def attempt(self, h: float, steps: int, bears: float, repeat: Repeat | None = None) -> int:
+        """Advance, if by a call to ``repeat``; raise ``Overloaded`` for loads on joints beyond ``bears``."""
         if self.stale:  # as where a step was undone
             self._follow(numbers=True)
         with StepTransaction(self, self._motion):
             self._prepare(h)
-            made = self._advance(h, steps)
+            made = self._advance(h, steps, repeat)
             if self.account.is_open:
                 close_account(self, self.schedule.forces)
-            load = load_of(self) if bears < math.inf and (steps > 1 or self.islands.divides) else 0.0
+            loaded = repeat is None and bears < math.inf and (steps > 1 or self.islands.divides)
+            load = load_of(self) if loaded else 0.0
             if load > bears and not any(isinstance(part.stepper, Soft) for part in self.parts):
                 raise Overloaded(made.steps, load)
             self.schedule.run(Stage.FINISH, self, h * made.steps)
-        return self._count(made, Repeat.of(self, self.schedule, self.steppers, self.stepper, h))
-
-    def _count(self, made: Advance, repeat: Repeat | None) -> int:
-        """Count the steps that were made, and return how many; the next may ``repeat`` them."""
         self.steps += made.steps
         self._forces_at, self.step_divisions = (self.steps, self.motion_edits), made.divisions
-        self._repeat = repeat
+        self._repeat = Repeat.of(self, self.schedule, self.steppers, h, self.stepper, repeat)
         self._follow_islands()
         return made.steps
 
@@ -193,10 +189,10 @@ class World(Facade):
         self.schedule.run(Stage.PREPARE, self, h)
         self.account.is_open = False
 
-    def _advance(self, h: float, steps: int) -> Advance:
+    def _advance(self, h: float, steps: int, repeat: Repeat | None) -> Advance:
         """Advance with the best stepper; choose again where its numbers do not apply any more."""
         try:
-            made = self._make(h, steps)
+            made = self._make(h, steps, repeat)
         except NoClosedForm:  # a body was given another velocity, or another spring
             self._choose()
             made = self._make(h, steps)
@@ -216,13 +212,15 @@ class World(Facade):
             self.time = start
         return made
 
-    def _make(self, h: float, steps: int) -> Advance:
-        """Make steps with the best stepper for the coming one, with its kernels compiled."""
-        self.stepper = stepper = self.stepper_for(h)
+    def _make(self, h: float, steps: int, repeat: Repeat | None = None) -> Advance:
+        """Make steps with the best stepper for the coming one, with its kernels compiled, or ``repeat``."""
+        self.stepper = stepper = self.stepper_for(h) if repeat is None else repeat.stepper
         self.steppers.use(stepper)
         self.compile(stepper.kernels)
         if not (stepper.keeps_balance or self.account.is_open):
-            open_account(self, self.schedule.forces)
+            open_account(self, self.schedule.forces, unedited=repeat is not None)
+        if repeat is not None:
+            return stepper.repeat(self, h, steps)
         apart = None if stepper.samples else self.samples
         ahead = steps if apart is None else min(steps, apart.steps_ahead(self.time))
         made = stepper.advance(self, h, self.steppers.at_once(stepper, ahead))

@@ -22,6 +22,9 @@ from physicslab.kernels import compile_kernels
 from physicslab.kernels.events import events
 from physicslab.prefabs import box, circle
 from physicslab.scenes import SCENES
+from physicslab.state.state import State
+from physicslab.stepping.rigid import Rigid
+from physicslab.stepping.stepper import Advance
 from physicslab.systems.standard import standard_systems
 
 G = 9.81
@@ -314,6 +317,34 @@ def test_the_same_run_gives_the_same_bits_and_steps_agree_with_runs() -> None:
     assert worlds[0].contacts.impacts.tobytes() == worlds[1].contacts.impacts.tobytes()
     assert worlds[2].collisions == worlds[0].collisions > 30
     assert np.abs(places[0] - places[2]).max() < 1e-9  # what rounding is, after a second of a gas
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_balls_that_come_to_rest_roll_on_in_few_calls(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    def balls() -> World:
+        random = np.random.default_rng(seed)
+        world = falling(e=0.3, mu=float(random.choice((0.0, 0.4))))
+        for x in range(3):
+            circle(
+                world, (2.0 * x, 0.5 + random.uniform()), radius=0.5, velocity=(random.uniform(-2, 2), 0.0),
+                angular_velocity=random.uniform(-3, 3), friction=0.3, restitution=0.4,
+            )  # fmt: skip
+        return world
+
+    by_step, calls, advance = balls(), list[int](), Rigid.advance
+    for _ in range(240):
+        by_step.step()
+
+    def counted(self: Rigid, state: State, h: float, steps: int) -> Advance:
+        calls.append(steps)
+        return advance(self, state, h, steps)
+
+    monkeypatch.setattr(Rigid, "advance", counted)
+    at_once = balls()
+    at_once.run(steps=240)
+    assert len(calls) < 60
+    for column in ("position", "angle"):
+        assert at_once.table(Transform)[column].tobytes() == by_step.table(Transform)[column].tobytes()
 
 
 def test_free_flight_is_exact() -> None:

@@ -79,13 +79,11 @@ def test_steps_made_before_such_a_moment_are_kept(monkeypatch: pytest.MonkeyPatc
     world, made = world_with((Rod, {"a": 1, "anchor_b": (0.0, 1.0)})), []
     flow = Flow._flow
 
-    def fails_at_last(
-        self: Flow, state: State, short: float, pieces: int, steps: int, *, divides: bool
-    ) -> None:
+    def fails_at_last(self: Flow, state: State, short: float, pieces: int, steps: int, **how: bool) -> None:
         if state.time > 0.5:
             raise NotSmooth("a line is reached")
         made.append(steps)
-        flow(self, state, short, pieces, steps, divides=divides)
+        flow(self, state, short, pieces, steps, **how)
 
     monkeypatch.setattr(Flow, "_flow", fails_at_last)
     world.run(steps=60)

@@ -10,6 +10,7 @@ from physicslab import load_scene
 from physicslab.components import Mass, Material, Transform, Velocity
 from physicslab.prefabs import circle
 from physicslab.stepping import repeat
+from physicslab.stepping.stepper import Advancer
 from physicslab.world import World
 
 SCENES = (
@@ -22,6 +23,9 @@ SCENES = (
     "car",
     "floating",
     "bridge",
+    "bounces",
+    "carts",
+    "billiards",
 )
 
 
@@ -96,15 +100,15 @@ def test_a_repeated_step_has_the_bits_of_one_made_in_full(name: str, monkeypatch
     assert [n for n, (one, other) in enumerate(zip(repeated, in_full, strict=True)) if one != other] == []
 
 
-@pytest.mark.parametrize("name", ["slope", "stack", "pendulum", "two_planets"])
+@pytest.mark.parametrize("name", ["slope", "stack", "pendulum", "two_planets", "drop"])
 def test_steps_are_repeated_while_nothing_is_edited(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    world, full, attempt = load_scene(name), list[float](), World.attempt
+    world, full, choose = load_scene(name), list[float](), World.stepper_for
 
-    def counted(self: World, h: float, steps: int, bears: float) -> int:
+    def counted(self: World, h: float) -> Advancer:
         full.append(self.time)
-        return attempt(self, h, steps, bears)
+        return choose(self, h)
 
-    monkeypatch.setattr(World, "attempt", counted)
+    monkeypatch.setattr(World, "stepper_for", counted)
     for _ in range(20):
         world.step()
     assert len(full) <= 1 + len(world.parts)

@@ -12,17 +12,18 @@ from numpy.typing import NDArray
 from physicslab.components import Transform, Velocity
 from physicslab.ecs.table import as_slice
 from physicslab.kernels import direct_entry
-from physicslab.kernels.accounts import ANGULAR_MOMENTUM, DAMPING, ENERGY, FIELDS
-from physicslab.kernels.forces.budget import ACCOUNTS, END
+from physicslab.kernels.accounts import FIELDS
+from physicslab.kernels.forces.budget import ACCOUNTS
 from physicslab.kernels.forces.force_calls import add_forces
 from physicslab.kernels.forces.inverse_square import PLAIN_LIMIT
 from physicslab.kernels.joints.layout import FIRST
-from physicslab.kernels.joints.rows import constrain, forces_of, project, set_going
+from physicslab.kernels.joints.rows import constrain, project, set_going
 from physicslab.ode.budget import BudgetLayout, book_in_python
+from physicslab.ode.steady_turn import turn_steadily
 from physicslab.state.packed import StateLayout, share_steepness, way_and_size
 from physicslab.state.remainders import NO_REMAINDERS, Remainders, coordinate_keys
 from physicslab.state.state import State
-from physicslab.systems.joint_forces import pivots_of
+from physicslab.systems.joint_forces import solved_rows
 from physicslab.systems.system import ForceSystem, Stage
 
 _APART, _PUT = 1e-6, 1e-9
@@ -139,6 +140,8 @@ class OdeSystem:
         self._clock = np.zeros(1)
         self._settings = self._look(state)
         self.laws: tuple[Any, ...] | None = None
+        self._is_current = False
+        self.q, self.v = np.zeros((2, 0))
 
     def _look(self, state: State) -> bytes:
         return state.bodies.inverse_mass.tobytes() + b"".join(f.settings(state) for f in self.forces)
@@ -147,13 +150,23 @@ class OdeSystem:
         """Whether a number was changed that the layout, or the choice of a method, depends on."""
         return self._look(state) != self._settings
 
-    def gather(self, state: State, *, unedited: bool = False) -> None:
-        """Take the state, the masses and the forces from the world's tables, unless these are known."""
+    def gather(self, state: State, *, unedited: bool = False) -> bool:
+        """Take the state, the masses and the forces from the world's tables, unless these are known.
+
+        Returns whether the state is that of the last :meth:`scatter`, since which all is ``unedited``.
+        """
         inputs = self.laws if unedited else self._inputs(state)
         if inputs is None or inputs != self.laws:
             self._gather_laws(state)
-            self.laws = inputs
-        self.gather_state(state)
+            self.laws, unedited = inputs, False
+        if not (unedited and self._is_current):
+            self.gather_state(state)
+            return False
+        self._clock[0] = state.time
+        self.q = np.concatenate((self.q[: self.layout.clock], *self._behind))
+        self.v = np.concatenate((self.v[: self.layout.moving_count], self._still))
+        self._begin()
+        return True
 
     def _inputs(self, state: State) -> tuple[Any, ...] | None:
         """Return what masses and packed forces are made of, or ``None`` where a force does not give that."""
@@ -193,7 +206,10 @@ class OdeSystem:
         places = position[moving].ravel(), transform["angle"][turning], position[fixed].ravel()
         self.q = np.concatenate((*places, *self._behind))
         self.v = np.concatenate((linear[moving].ravel(), velocity["angular"][turning], self._still))
-        self._low, self.wanted = None, NOTHING_WANTED
+        self._begin()
+
+    def _begin(self) -> None:
+        self._low, self.wanted, self._is_current = None, NOTHING_WANTED, False
         self._start = (self.q.copy(), self.v.copy()) if self.interpreted else None
 
     def remainders(self, state: State) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -224,7 +240,7 @@ class OdeSystem:
     def scatter(self, state: State, span: float) -> None:
         """Put the state back into the tables; what no force turns has turned steadily for ``span`` s."""
         self._raise()
-        layout, transform, velocity = self.layout, state.table(Transform), state.table(Velocity)
+        layout = self.layout
         if not self._every_row:
             self.hold_together()
         self.write(state)
@@ -235,14 +251,9 @@ class OdeSystem:
         elif self._carries:
             state.remainders = NO_REMAINDERS
         self._note_rates(state)
-        steady = layout.steady
-        if len(steady):
-            spin, c = velocity["angular"][steady], state.physics.angular_damping
-            (transform["angle"][steady],), (velocity["angular"][steady],) = steady_turn(
-                state, steady, np.array([span])
-            )
-            if c:
-                self._book_steady(state, spin, c * span)
+        self._is_current = True
+        if len(layout.steady):
+            turn_steadily(state, layout.steady, span)
 
     def set_going(self) -> None:
         """Change speeds that joints do not allow, and bring motors to theirs, by impulses."""
@@ -268,25 +279,36 @@ class OdeSystem:
         self.q = q
         self._write(state, q, self.v)
 
-    def hold_together(self) -> bool:
-        """Put together again what joints hold together; return whether it was apart by more than errors."""
-        if self._joints is None:
-            return False
+    def hold_together(self) -> NDArray[np.float64]:
+        """Put together again what joints hold together; return the coordinates before (n,) [m and rad]."""
         n = self.layout.moving_count
-        low, before = self._low or (np.zeros(n), np.zeros(n)), self.q[:n].copy()
-        direct_entry(project)(self.q, self.v, *low, *self.joints)
-        if before.tobytes() == self.q[:n].tobytes():  # which is found in a tenth of the time
+        before = self.q[:n]
+        if self._joints is not None:
+            before, low = before.copy(), self._low or np.zeros((2, n))
+            direct_entry(project)(self.q, self.v, *low, *self.joints)
+        return before
+
+    def was_apart(self, before: NDArray[np.float64]) -> bool:
+        """Whether joints were apart by more than a method errs, by coordinates (n,) before they were not."""
+        if before.tobytes() == self.q[: len(before)].tobytes():  # which is found in a tenth of the time
             return False
-        moved, size = way_and_size(before, self.q[:n])
+        moved, size = way_and_size(before, self.q[: len(before)])
         return moved > _APART * size
 
     def find_joint_forces(self, state: State) -> None:
         """Find the forces of joints in the present state of motion, where nothing touches."""
         if self._joints is not None:
             direct_entry(add_forces)(self.q, self.v, np.zeros(len(self.q)), self.calls)
-            state.joints.force[:] = forces_of(*self.joints, len(state.joints))
-            rows, pivots = self._pivots  # those that depend on others get no force
+            rows, _, pivots = self._solved  # those that depend on others get no force
+            state.joints.force[:] = 0.0
+            self.add_joint_forces(state)
             state.joints.dependent[rows] = self._joints.parameters[pivots] == 0.0
+
+    def add_joint_forces(self, state: State) -> None:
+        """Add the forces [N or N m] of joints as they were found last."""
+        if self._joints is not None:
+            rows, forces, _ = self._solved
+            state.joints.force[rows] += self._joints.parameters[forces]
 
     @property
     def joined(self) -> bool:
@@ -301,17 +323,8 @@ class OdeSystem:
 
     def _book(self, state: State) -> None:
         """Book what causes have given since the state was gathered."""
-        if len(self._causes):
-            given = self.v[self.layout.clock + 1 : self.places[END]].reshape(-1, ACCOUNTS)
-            state.account.sums[self._causes] += given
-
-    def _book_steady(self, state: State, spin: NDArray[np.float64], decay: float) -> None:
-        """Book what damping has taken of the rotation of bodies that no force turns."""
-        inverse = state.bodies.inverse_inertia[self.layout.steady]
-        turns = inverse > 0.0
-        momentum = spin[turns] / inverse[turns]
-        state.account.sums[DAMPING, ENERGY] += 0.5 * float(momentum @ spin[turns]) * np.expm1(-2.0 * decay)
-        state.account.sums[DAMPING, ANGULAR_MOMENTUM] += float(momentum.sum()) * np.expm1(-decay)
+        for cause, first in self.slots.items():
+            state.account.sums[cause] += self.v[first : first + ACCOUNTS]
 
     def _note_rates(self, state: State) -> None:
         """Note the fastest rates that forces met, wherever within the steps that was."""
@@ -364,7 +377,7 @@ class OdeSystem:
         )
         also = (*self._also, FIELDS) if drifts else self._also
         book = BudgetLayout(state, self.layout, packed, self.damping, also, kicked=self._kicked)
-        self.slots, self.places, self._causes = book.slots, book.places, np.array([*book.slots], np.int64)
+        self.slots, self.places = book.slots, book.places
         self._behind = self._clock, np.zeros(book.count)
         self._still = np.zeros(2 * len(self.layout.fixed) + 1 + book.count)
         forces = [force for _, force in packed if force is not None]
@@ -376,7 +389,7 @@ class OdeSystem:
             if force.resistance is not None
         ]
         self._joints = next((force for force in forces if force.kernel is constrain), None)
-        self._pivots = pivots_of(self.joints[1])
+        self._solved = solved_rows(self.joints[1])
         measured = [(system, force) for system, force in packed if force and force.max_rate_slot is not None]
         self._measured = [system for system, _ in measured]
         self.steepness = measured[-1][1].parameters[-1:] if measured else np.zeros(1)
@@ -434,16 +447,3 @@ class OdeSystem:
                 state.time = start
 
         return call
-
-
-def steady_turn(
-    state: State, rows: NDArray[np.int64], after: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return angles [rad] and rates [rad/s] (n, rows) of what no force turns, after times [s] (n,)."""
-    spin, angle = state.table(Velocity)["angular"][rows], state.table(Transform)["angle"][rows]
-    c, time = state.physics.angular_damping, after[:, None]
-    if not c:
-        return angle + spin * time, np.repeat(spin[None], len(after), axis=0)
-    free = state.bodies.inverse_mass[rows] > 0.0
-    turned = spin * np.where(free, -np.expm1(-c * time) / c, time)
-    return angle + turned, np.where(free, spin * np.exp(-c * time), spin)

@@ -98,9 +98,11 @@ def open_account(state: State, forces: Sequence[ForceSystem], *, unedited: bool 
     unchanged = unedited and account.is_known and _is_of_columns(forces)
     if not unchanged:
         seen = _seen(state, forces)
-        unchanged = seen is not None and seen == account.seen and account.start is not None
-    now = account.last if unchanged else balance_of(state, forces)
-    account.open(now, held_in(state), state.time)
+        unchanged = seen is not None and seen == account.seen and account.is_known
+    if unchanged:
+        account.held = held_in(state)
+    else:
+        account.open(balance_of(state, forces), held_in(state), state.time)
     account.is_open = True
 
 

@@ -103,6 +103,10 @@ class EventDriven(Stepper):
         """Whether the coming step is not one that it has just left to others."""
         return self._left != state.steps
 
+    def goes_on(self, state: State) -> bool:
+        """Return True: its forces accelerate all bodies alike."""
+        return True
+
     def advance(self, state: State, h: float, steps: int) -> Advance:
         """Make all of the steps, in one compiled loop; or those before the first that is left to others.
 

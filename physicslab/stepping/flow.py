@@ -13,7 +13,8 @@ from physicslab.integrators import Exhausted, StepTooSmall
 from physicslab.integrators.dop853 import MAX_COSTLY
 from physicslab.kernels.clock import time_after
 from physicslab.ode.closed_form import NoClosedForm
-from physicslab.ode.system import OdeSystem, steady_turn
+from physicslab.ode.steady_turn import steady_turn
+from physicslab.ode.system import OdeSystem
 from physicslab.state.joint_figures import is_overloaded
 from physicslab.state.masses import Diverged, check_finite
 from physicslab.state.samples import Samples
@@ -42,6 +43,9 @@ _FOLLOWED = 1e-13
 errors are some four times it, and do not die out, as those of the steps do where a larger one is chosen."""
 _FINEST = 1024
 """Parts of a step, of which as many are taken together as such a span can have."""
+
+_NONE_DUE = np.zeros(0, np.int64), np.zeros(0), np.zeros((2, 0, 0))
+"""Numbers, times and motion of samples that are due within a step, where there are none."""
 
 
 class NotSmooth(ArithmeticError):
@@ -90,7 +94,7 @@ class Flow(Stepper):
         if state.joints.breakable and (state.samples is None or state.samples.stride > 1):
             longest = whole  # loads are known at the ends of steps that are sampled
         most = MAX_COSTLY * max(1, math.ceil(h / _COSTLY_S))
-        made, span, short = 0, longest, h / parts / whole
+        made, span, short, unedited = 0, longest, h / parts / whole, self._unedited
         left = most  # evaluations that the step may have that is being made
         try:
             while made < parts * steps * whole:
@@ -99,7 +103,7 @@ class Flow(Stepper):
                 divides = adaptive and span > 1 and left > _SPAN
                 self._ode.most = _SPAN if divides else left if adaptive else None
                 try:
-                    self._flow(state, short, span, max(1, span // whole), divides=divides)
+                    self._flow(state, short, span, max(1, span // whole), divides=divides, unedited=unedited)
                 except Overloaded as found:
                     found.steps += made // (parts * whole)
                     raise
@@ -110,7 +114,7 @@ class Flow(Stepper):
                     if made and parts == 1 and made % whole == 0:
                         return Advance(made // whole)  # the next call begins where it fails
                     raise
-                made, state.time = made + span, time_after(state.time, short, span)
+                made, state.time, unedited = made + span, time_after(state.time, short, span), True
                 step, rest = divmod(made, parts * whole)
                 if state.joints.breakable and not rest and step < steps and is_overloaded(state):
                     raise Overloaded(step)
@@ -153,21 +157,25 @@ class Flow(Stepper):
 
         return make
 
-    def _flow(self, state: State, short: float, pieces: int, steps: int, *, divides: bool) -> None:
+    def _flow(
+        self, state: State, short: float, pieces: int, steps: int, *, divides: bool, unedited: bool
+    ) -> None:  # fmt: skip
         """Advance by ``pieces`` times ``short`` seconds, which count as ``steps``."""
         method, ode, span = self._method, self._ode, short * pieces
-        ode.gather(state, unedited=self._unedited)
-        put_together(state, self._schedule.forces, ode)
+        if ode.gather(state, unedited=unedited):
+            ode.set_going()
+        else:
+            put_together(state, self._schedule.forces, ode)
         parts = 1 if method.chooses_steps else self._plan.substeps
         count, h = (1, span) if method.chooses_steps else (parts * steps, short / parts)
         start = time.perf_counter_ns()
-        places, after = (np.zeros(0, np.int64), np.zeros(0))
+        places, after, packed = _NONE_DUE
         if state.samples is not None:
             places, after = state.samples.due(state.time, span)
             if len(after) and after[-1] == span:  # taken at the end
                 places, after = places[:-1], after[:-1]
-        packed = np.full((2, len(places), ode.layout.moving_count), np.nan)
         if len(places):
+            packed = np.full((2, len(places), ode.layout.moving_count), np.nan)
             if method.samples and ode.tolerance <= max(_FOLLOWED, state.simulation.tolerance):
                 ode.wanted = after, *packed
             else:
@@ -181,9 +189,9 @@ class Flow(Stepper):
             if (ode.undo(state) or self._joined) and state.simulation.integrator == "auto":
                 raise NotSmooth(str(error)) from error
             raise changes_fast(state, self._schedule.forces, error) from error
-        if state.samples is not None:
+        if state.samples is not None and len(places):
             self._keep(state, state.samples, places, after, packed)
-            if state.joints.breakable and len(places):
+            if state.joints.breakable:
                 self._check_loads(state, after, packed)
         ode.scatter(state, span)
         self._schedule.note(IntegrateSystem.__name__, steps, time.perf_counter_ns() - start)

@@ -81,6 +81,7 @@ class Islands:
     keeps_balance: bool = False
     leaves_forces: bool = False
     samples: bool = True
+    yields: bool = False
 
     def __init__(self, schedule: Schedule, make: Make | None) -> None:
         self._schedule, self._make = schedule, make

@@ -17,7 +17,6 @@ from physicslab.kernels import direct_entry
 from physicslab.kernels.accounts import CONTACT, FRICTION, HAND, JOINTS, MOTORS
 from physicslab.kernels.broad import near_pairs
 from physicslab.kernels.clock import time_after
-from physicslab.kernels.joints.rows import forces_of
 from physicslab.kernels.rigid import features as F
 from physicslab.kernels.rigid import joined, step
 from physicslab.kernels.rigid.features import PAIR
@@ -74,6 +73,7 @@ class Rigid(Stepper):
     name: str = "rigid"
     title: str = "Rigid contacts, events at their exact times"
     samples: bool = True
+    yields: bool = True
     kernels: tuple[Any, ...] = (
         step.make_step, write_points, near_pairs.carry_over, slots.list_scalar,
     )  # fmt: skip
@@ -81,6 +81,7 @@ class Rigid(Stepper):
     def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None:
         self._schedule = schedule
         self.reason = plan.contact_reason
+        self._impacts_alone, self._goes_on = plan.collisions == "exact", False
         self._rows = rows = RigidRows(state)
         causes = [FRICTION, CONTACT, *([HAND] if _is_anything_driven(state) else [])]
         causes += [JOINTS, MOTORS] if len(rows) else []
@@ -117,24 +118,28 @@ class Rigid(Stepper):
         return self._refused != state.steps
 
     def goes_on(self, state: State) -> bool:
-        """Whether no force is one in Python, which may depend on anything."""
-        return not self._ode.interpreted
+        """Whether no force is one in Python, which may depend on anything, and the next step is its own."""
+        return self._goes_on and not self._ode.interpreted
 
     def advance(self, state: State, h: float, steps: int) -> Advance:
-        """Make the steps, or those before the first that it cannot make and is not ready for."""
+        """Make the steps, or those before the first that it cannot make and is not ready for.
+
+        In a scene of impacts it ends where no body is held by another: the next step may be a flight.
+        """
         began, parts = time.perf_counter_ns(), divisions(state, h)
         self._ode.gather(state)
         put_together(state, self._schedule.forces, self._ode)
         scene = self._scene(state)
         figures, last, made, at = self._figures(state, h), None, 0, state.time
         rests = figures is not None and figures == self._resting
-        while made < steps:
+        while made < steps and (self._goes_on or not made):
             if rests:
-                for _ in range(steps - made):
+                count = steps - made if self._goes_on else 1
+                for _ in range(count):
                     self._motion.rest(h)
                 if state.samples is not None:
-                    self._sample(state.samples, at, (steps - made) * h)
-                made = steps
+                    self._sample(state.samples, at, count * h)
+                made += count
                 break
             step = self._step(scene, state, at, h, parts)
             if step.by_impulses and self._gives_up:
@@ -147,6 +152,7 @@ class Rigid(Stepper):
                 break
             last, made = step, made + 1
             rests = step.rests and figures is not None
+            self._goes_on = not self._impacts_alone or self._records.hold(step)
             if state.joints.breakable and made < steps:
                 self._check_loads(scene, state, step, made)
             if state.samples is not None:
@@ -205,7 +211,8 @@ class Rigid(Stepper):
             moment = at + part * h / parts
             q[clock], v[clock] = moment, 1.0  # the clock goes by one second a second
             step = self._motion.step(scene, state, moment, h / parts)
-            if self._ode.hold_together() and not (step.refused or step.by_impulses):
+            together = self._ode.hold_together()
+            if not (step.refused or step.by_impulses) and self._ode.was_apart(together):
                 step.refused = sentence("contradiction")
             state.force_evaluations += step.evaluations
             self.energetic_impacts += step.energetic
@@ -279,7 +286,7 @@ class Rigid(Stepper):
         if len(joints):
             ode.find_joint_forces(state)
             joined.find_answer(scene, made.points, made.measures, made.forces, made.closed, ode.q, ode.v)
-            joints.force += forces_of(*ode.joints, len(joints))
+            ode.add_joint_forces(state)
             contacts = len(self._pairs) - len(self._rows)
             for i in range(made.closed):
                 number = int(made.points[i, PAIR]) - contacts
@@ -328,6 +335,14 @@ class RigidRecords:
         if made.impacts:
             write_impacts(state, made.impacts, numbers_of_pairs(contacts))
         contacts.stale = True  # for the contact step, should it have to go on
+
+    def hold(self, made: MadeStep) -> bool:
+        """Whether a body is surely held by another: one of the first two points of a pair presses."""
+        of, forces = made.points[: made.closed, F.PAIR].tolist(), made.forces[: 2 * made.closed : 2].tolist()
+        return any(
+            force > 0.0 and pair < len(self._pairs) and of[:i].count(pair) < 2
+            for i, (pair, force) in enumerate(zip(of, forces, strict=True))
+        )
 
     def _key(self, state: State, made: MadeStep, i: int) -> tuple[int, ...]:
         """Return the pair of a point of a chain and its segment."""

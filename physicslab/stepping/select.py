@@ -44,10 +44,10 @@ class Steppers:
     def at_once(self, stepper: Advancer, steps: int) -> int:
         """Return how many of ``steps`` a stepper makes in one call; one that is none of these, all.
 
-        It is one where a better stepper has left the coming step to it, and may make the next: a run makes
-        the same steps as single ones.
+        It is one where a better stepper has left the coming step to it, and may make the next, unless it
+        yields then: a run makes the same steps as single ones.
         """
-        if steps == 1 or stepper not in self.usable:
+        if steps == 1 or stepper not in self.usable or stepper.yields:
             return steps
         first = next(one for one in self.usable if not isinstance(one, Asleep))
         return steps if stepper is first or isinstance(stepper, Asleep) else 1

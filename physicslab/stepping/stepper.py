@@ -61,6 +61,8 @@ class Advancer(Protocol):
         Whether ``bodies.force`` holds the forces after a step.
     samples : bool
         Whether it takes those of ``state.samples`` that are due within its steps.
+    yields : bool
+        Whether its calls end where a better stepper may make the next step.
     """
 
     name: str
@@ -68,6 +70,7 @@ class Advancer(Protocol):
     keeps_balance: bool
     leaves_forces: bool
     samples: bool
+    yields: bool
 
     @property
     def reason(self) -> str:
@@ -141,6 +144,7 @@ class Stepper(Advancer, Protocol):
     keeps_balance: bool = False
     leaves_forces: bool = False
     samples: bool = False
+    yields: bool = False
 
     def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None: ...
 

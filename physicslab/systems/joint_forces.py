@@ -104,14 +104,15 @@ class JointForces(ForceSystem):
         return True
 
 
-def pivots_of(whole: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Return rows of joints (n,), and where their pivots are (n,): zero of one that depends on others."""
+def solved_rows(whole: NDArray[np.int64]) -> tuple[NDArray[np.int64], ...]:
+    """Return rows of joints (n,), where their forces and pivots are: these zero if they depend on others."""
     n = int(whole[packing.ROWS])
     places = whole[packing.FIRST : packing.FIRST + packing.PLACES * n].reshape(n, packing.PLACES)
-    factor = (packing.GIVEN + packing.STATE) * n + 2 * int(whole[packing.COORDINATES])
-    factor += int(whole[packing.ENTRIES])
+    states = packing.GIVEN * n + 2 * int(whole[packing.COORDINATES])
+    forces = states + packing.STATE * np.arange(n) + packing.LAMBDA
+    factor = states + packing.STATE * n + int(whole[packing.ENTRIES])
     pivots = factor + places[:, packing.AT] + np.arange(n) - places[:, packing.BEGIN]
-    return places[:, packing.NUMBER], pivots
+    return places[:, packing.NUMBER], forces, pivots
 
 
 def _envelope(

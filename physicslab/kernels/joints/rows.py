@@ -11,8 +11,6 @@ whole numbers, which kernels get as arrays or by pointers.
 
 from typing import Any
 
-import numpy as np
-
 from physicslab.kernels import Numbers, Rows, always_inlined, kernel
 from physicslab.kernels.accounts import ENERGY, book
 from physicslab.kernels.forces.force_calls import force_kernel
@@ -30,15 +28,6 @@ _MOST = 24
 _FAR, _HALVED = 1e-6, 1 / 64
 """Share of the largest coordinate above which errors may not grow by a correction; it is halved where they
 do, down to this share of it."""
-
-
-def forces_of(numbers: Numbers, whole: Rows, count: int) -> Numbers:
-    """Return the forces (count,) [N or N m] of rows by their numbers, as found last; zero for others."""
-    n, forces = int(whole[L.ROWS]), np.zeros(count)
-    states = L.GIVEN * n + 2 * int(whole[L.COORDINATES])
-    found = numbers[states : states + L.STATE * n].reshape(n, L.STATE)[:, L.LAMBDA]
-    forces[whole[L.FIRST : L.FIRST + L.PLACES * n].reshape(n, L.PLACES)[:, L.NUMBER]] = found
-    return forces
 
 
 @always_inlined
