@@ -49,6 +49,7 @@ def test_every_scene_is_told_in_the_same_words_and_stays_as_it_is(name: str) -> 
     before = bits(world)
     words = describe(world)
     assert words == describe(load_scene(name)) and bits(world) == before
+    assert "e+" not in words, "a screen reader says it letter by letter"
     moving = len(world.batch(Velocity))
     assert f"{moving} {'body' if moving == 1 else 'bodies'} can move" in words
     assert len(describe(world, "de").splitlines()) == len(words.splitlines()) < 70

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pygame
 import pytest
-from desk import SETTLED, Desk, empty_world
+from desk import SETTLED, Desk, empty_world, sized, tap
 from recording import RecordingCanvas
 from test_hud import frame, recorded, row
 
@@ -462,3 +462,16 @@ def test_shares_and_lengths_that_are_out_of_the_ordinary() -> None:
     assert percentage(float("inf")) == "not finite"
     assert percentage(-1.5) == "-150 %"
     assert round_quantity(2e9, "m") == "2·10⁹ m"
+
+
+def test_energy_that_is_all_of_the_start_has_no_bar_of_where_it_came_from() -> None:
+    """What gives less than a hundredth has no name there: the bar had one part, and moved all below it."""
+    desk = sized((1280, 800), load_scene("drop"))
+    tap(desk, "space")
+    desk.window.selection.take(desk.world.entity("ball"))
+    tap(desk, "up")
+    tap(desk, "escape")
+    desk.frames(20)
+    assert any(words.startswith("Given: edits") for words in desk.ui.words)
+    assert "Where the energy is now" in desk.ui.words
+    assert "Where the energy came from" not in desk.ui.words

@@ -286,7 +286,7 @@ def test_the_hand_goes_on_from_where_an_edit_has_put_what_it_holds() -> None:
     desk.release(0.08, 1.52)
     desk.frames()
     undone = [desk.window.edits.history.undo(runs=False) for _ in range(3)]
-    assert undone == ["moved by hand", "moved 1", "moved by hand"]
+    assert undone == ["moved by hand", "moved circle 1", "moved by hand"]
 
 
 def test_what_is_held_for_an_edit_is_held_again_before_time_goes_on() -> None:

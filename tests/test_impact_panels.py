@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,8 @@ from desk import Desk, choose, click, empty_world, middle_of, point, sized, tap
 
 from physicslab import World
 from physicslab.components import Mass, Material, Name, Rod, Shape, Transform, Velocity
-from physicslab.diagnostics.collision import read_collision
+from physicslab.diagnostics.collision import read_collision, resolve
+from physicslab.prefabs import box, circle
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
 from physicslab.view.controls.controls import CONTROLS
 from physicslab.view.window.impacts import FRAMES, LIMIT, ImpactList
@@ -477,3 +479,23 @@ def test_the_picture_of_the_microscope_has_both_bodies() -> None:
     desk.frames(4)
     for label in ("vB", "vB'", "pB", "pB'", "J", "n", "t"):
         assert label in desk.ui.words, label
+
+
+def test_a_resting_pair_that_an_impact_goes_through_has_no_share_of_its_speed() -> None:
+    world = empty_world()
+    world.simulation = dataclasses.replace(world.simulation, contacts="rigid")
+    box(world, (0, -0.5), width=8, height=1, static=True, restitution=0.5)
+    for place in range(3):
+        box(world, (0.02 * place, 0.2 + 0.4 * place), width=0.8, height=0.4, restitution=0.0, friction=0.4)
+    circle(world, (0.1, 2.0), radius=0.2, velocity=(0.0, -3.0), restitution=0.0)
+    world.contacts.read = True
+    while not world.collisions:
+        world.step()
+    records = world.contacts.impacts
+    assert len(records) == 4  # the ball on the top, and the three contacts below
+    for record in records:
+        collision = read_collision(record)
+        told = story(collision, resolve(collision), ("below", "above"))
+        rested = record["normal_y"] * (record["before_by"] - record["before_ay"]) > -1e-6
+        assert ("touched, and an impact of others went through" in told[0]) == rested
+        assert told[1] == "They do not bounce (e = 0)."

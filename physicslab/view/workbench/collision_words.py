@@ -67,8 +67,10 @@ def story(collision: Collision, result: Result, names: tuple[str, str]) -> list[
     spot = max(collision.spots, key=lambda one: one.normal_impulse)
     vn, vt = collision.approach(spot)
     left, slides = collision.approach(spot, after=True)
-    told: list[str] = [_who(collision, names, quantity(-vn, "m/s"))]
-    told.append(_bounce(collision, result, -left / vn if vn else 0.0))
+    moved = collision.normal_impulse * (collision.a.inverse_mass + collision.b.inverse_mass)
+    rested = vn >= -AGREES * moved
+    told: list[str] = [_who(collision, names, "" if rested else quantity(-vn, "m/s"))]
+    told.append(_bounce(collision, result, 0.0 if rested else -left / vn))
     told.append("These speeds are along the normal n of the contact.")
     if len(collision.spots) == 2:
         told.append("Two points met at once, as when a box lands flat: both impulses are found together.")
@@ -84,11 +86,13 @@ def story(collision: Collision, result: Result, names: tuple[str, str]) -> list[
 
 
 def _who(collision: Collision, names: tuple[str, str], speed: str) -> str:
-    """Return which of the two moved into the other."""
+    """Return which of the two moved into the other; without a ``speed`` they rested on each other."""
     a, b = (
         Sentence("{name} ({letter})", name=name, letter=letter)
         for name, letter in zip(names, "AB", strict=True)
     )
+    if not speed:
+        return Sentence("{a} and {b} touched, and an impact of others went through.", a=a, b=b)
     of_a = collision.a.before.linear.dot(collision.normal)
     of_b = -collision.b.before.linear.dot(collision.normal)
     if not (collision.a.is_free and collision.b.is_free):

@@ -137,6 +137,7 @@ def _build_row(ui: Ui, world: World, window: Window, n: int, record: Any) -> Non
     a, b = (body_name(world, int(record[side]), wall) for side in ("entity_a", "entity_b"))
     sticks, found = record["sticks"], float(record["e_found"])
     speed, normal = float(record["approach_speed"]), float(record["normal_impulse"])
+    speed = 0.0 if math.isnan(found) else speed  # of a resting pair that takes part in an impact
     cells = (
         f"{record['time']:.4f} s", a, b, quantity(speed, "m/s"), quantity(normal, "N s"),
         quantity(without_rounding(float(record["tangent_impulse"]), normal), "N s"),

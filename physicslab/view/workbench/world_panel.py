@@ -117,7 +117,7 @@ def build_energies(ui: Ui, figures: WorldFigures, *, error: bool) -> None:
     """Build the energies, bars of where they come from and are, and the ``error`` if that is wanted."""
     _build_sums(ui, figures)
     came, went = parts_of(figures, ui.theme)
-    if len(came) > 1:
+    if any(part is not came[0] for part in _seen(came)):  # the start alone says nothing
         _build_bar(ui, "Where the energy came from", came)
     _build_bar(ui, "Where the energy is now", went)
     ui.faint(flow_words(figures))
@@ -175,7 +175,13 @@ def _build_bar(ui: Ui, title: str, parts: list[Part]) -> None:
     imgui.dummy(ImVec2(width, height))
     figures = [f"{part.name} {quantity(part.energy, 'J')}" for part in parts]
     ui.tip(". ".join(("; ".join(figures), _ZERO_TIP)))
-    _write_names(ui, [part for part in parts if abs(part.energy) >= _NAMED * whole])
+    _write_names(ui, _seen(parts))
+
+
+def _seen(parts: Sequence[Part]) -> list[Part]:
+    """Return the parts that are large enough in their bar to have a name."""
+    whole = sum(abs(part.energy) for part in parts)
+    return [part for part in parts if abs(part.energy) >= _NAMED * whole]
 
 
 def _write_names(ui: Ui, parts: Sequence[Part]) -> None:
