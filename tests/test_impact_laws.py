@@ -277,7 +277,7 @@ class Cluster:
             self._ode = rigid._ode
             self.world.compile(rigid.kernels)
             self._ode.gather(self.world)
-            self.scene = rigid._scene(self.world)
+            self.scene = rigid._present_scene(self.world)
         self._room = room_for(len(self._ode.q), len(rigid._pairs))
 
     def place(self, random: np.random.Generator) -> None:

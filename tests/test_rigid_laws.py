@@ -227,7 +227,7 @@ def test_bodies_that_hang_together_pay_for_their_move() -> None:
     stepper = rigid_of(world)
     made, ode = stepper._motion, stepper._ode
     ode.gather(world)
-    scene, pay = stepper._scene(world), fallback_of(take_work)
+    scene, pay = stepper._present_scene(world), fallback_of(take_work)
     for by, paid in ((1e-3, True), (1.0, False)):
         before = ode.q.copy()
         ode.q[3:6:2] += by
