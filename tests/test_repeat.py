@@ -8,9 +8,12 @@ import pytest
 
 from physicslab import load_scene
 from physicslab.components import Mass, Material, Transform, Velocity
-from physicslab.prefabs import circle
+from physicslab.prefabs import box, circle
+from physicslab.state.state import State
 from physicslab.stepping import repeat
 from physicslab.stepping.stepper import Advancer
+from physicslab.systems.standard import standard_systems
+from physicslab.systems.system import Stage, System, at
 from physicslab.world import World
 
 SCENES = (
@@ -116,3 +119,25 @@ def test_steps_are_repeated_while_nothing_is_edited(name: str, monkeypatch: pyte
     before = len(full)
     world.step()
     assert len(full) > before
+
+
+class Throws(System):
+    """Throws all that moves upwards, once."""
+
+    @at(Stage.IMPACT)
+    def throw(self, state: State, h: float) -> None:
+        """Write the speeds [m/s] at the end of the 21st step."""
+        if state.steps == 20:
+            state.table(Velocity)["linear"][state.batch(Velocity, Mass).rows] = (0.0, 5.0)
+
+
+@pytest.mark.parametrize("contacts", ["rigid", "auto"])
+def test_speeds_that_a_system_writes_at_impacts_are_those_of_the_next_step(contacts: str) -> None:
+    world = World(systems=(*standard_systems(), Throws()))
+    world.simulation = replace(world.simulation, contacts=contacts)
+    box(world, (0, -0.5), width=8, height=1, static=True)
+    thrown = box(world, (0, 0.5), width=1, height=1)
+    for _ in range(22):
+        world.step()
+    assert world.plan.contacts == "rigid"
+    assert world.component(thrown, Transform).position.y > 0.5 + 4.0 * world.simulation.dt
