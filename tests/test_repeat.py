@@ -121,23 +121,30 @@ def test_steps_are_repeated_while_nothing_is_edited(name: str, monkeypatch: pyte
     assert len(full) > before
 
 
-class Throws(System):
-    """Throws all that moves upwards, once."""
+class Writes(System):
+    """Throws all that moves upwards, and makes it heavier, at the end of the 21st step."""
 
     @at(Stage.IMPACT)
-    def throw(self, state: State, h: float) -> None:
-        """Write the speeds [m/s] at the end of the 21st step."""
+    def write(self, state: State, h: float) -> None:
+        """Write speeds [m/s] and masses [kg]."""
         if state.steps == 20:
-            state.table(Velocity)["linear"][state.batch(Velocity, Mass).rows] = (0.0, 5.0)
+            rows = state.batch(Velocity, Mass).rows
+            state.table(Velocity)["linear"][rows] = (0.0, 5.0)
+            state.table(Mass)["mass"][rows] = 7.0
 
 
-@pytest.mark.parametrize("contacts", ["rigid", "auto"])
-def test_speeds_that_a_system_writes_at_impacts_are_those_of_the_next_step(contacts: str) -> None:
-    world = World(systems=(*standard_systems(), Throws()))
-    world.simulation = replace(world.simulation, contacts=contacts)
+@pytest.mark.parametrize(("height", "stepper"), [(0.5, "rigid"), (50.0, "event_driven")])
+def test_speeds_and_masses_that_a_system_writes_at_impacts_are_those_of_the_next_step(
+    height: float, stepper: str
+) -> None:
+    world = World(systems=(*standard_systems(), Writes()))
+    world.simulation = replace(world.simulation, collisions="exact" if height > 1.0 else "auto")
     box(world, (0, -0.5), width=8, height=1, static=True)
-    thrown = box(world, (0, 0.5), width=1, height=1)
-    for _ in range(22):
+    thrown = circle(world, (0.0, height), radius=0.5)
+    for _ in range(21):
         world.step()
-    assert world.plan.contacts == "rigid"
-    assert world.component(thrown, Transform).position.y > 0.5 + 4.0 * world.simulation.dt
+    reached = world.component(thrown, Transform).position.y
+    world.step()
+    assert world.stepper is not None and world.stepper.name == stepper
+    assert world.component(thrown, Transform).position.y > reached + 4.0 * world.simulation.dt
+    assert world.bodies.inverse_mass[world.entity_index.row_of[thrown]] == pytest.approx(1.0 / 7.0)

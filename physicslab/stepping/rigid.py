@@ -103,7 +103,6 @@ class Rigid(Stepper):
         self.why_impulses, self.energy_added = "", 0.0
         within = [system for system in schedule.running if system.is_engine and system.acts_within_step()]
         self._within = [system.name for system in within if not isinstance(system, IntegrateSystem)]
-        self._acted_upon = any(not isinstance(system, ResolveSystem) for system in schedule.at(Stage.IMPACT))
         steady = not any(force.depends_on_time(state) for force in schedule.smooth_forces)
         self._motion = RigidMotion(self._ode, len(self._pairs), steady, rows)
 
@@ -121,8 +120,8 @@ class Rigid(Stepper):
         return self._refused != state.steps
 
     def goes_on(self, state: State) -> bool:
-        """Whether the next step is its own, and no Python acts, which may depend on anything or write."""
-        return self._goes_on and not (self._ode.interpreted or self._acted_upon)
+        """Whether no force is one in Python, which may depend on anything, and the next step is its own."""
+        return self._goes_on and not self._ode.interpreted
 
     def repeat(self, state: State, h: float, steps: int) -> Advance:
         """Make steps as in the last call, under its laws."""
