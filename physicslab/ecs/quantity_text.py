@@ -86,7 +86,6 @@ _UNCLEAR = (
 )  # fmt: skip
 """Texts that can be read as different numbers."""
 _SPACED = re.compile(r"(?<=[A-Za-zµ°π0-9)])[ ·]+(?=[A-Za-zµ°π(])")
-
 _QUOTED = re.compile(r'"([^"]*)"')
 """A name that is no plain word, as ``"box 2"`` in ``"box 2".y``."""
 _ROW = re.compile(r"\s*\[(?P<parts>[^][]*)\](?P<unit>[^][]*)")
@@ -303,12 +302,10 @@ def evaluate_pair(text: str, unit: str = "1") -> tuple[float, float]:
 
 
 def _evaluate_row(text: str, unit: str, count: int, noun: str) -> list[float]:
-    row = _ROW.fullmatch(text)
-    parts = [] if row is None else row["parts"].split(",")
-    if row is None or len(parts) != count:
+    if (row := _ROW.fullmatch(text)) is None or row["parts"].count(",") != count - 1:
         raise InvalidText(f"'{_shown(text)}' is no {noun}")
     own = row["unit"].strip()
-    return [evaluate(f"({part.strip()}) {own}" if own else part, unit) for part in parts]
+    return [evaluate(f"({part.strip()}) {own}" if own else part, unit) for part in row["parts"].split(",")]
 
 
 def evaluate_points(text: str, unit: str = "1") -> list[tuple[float, float]]:
@@ -319,17 +316,15 @@ def evaluate_points(text: str, unit: str = "1") -> list[tuple[float, float]]:
     """
     points = _POINTS.fullmatch(text)
     if points is None:
-        shown = shortened(printable(text.strip()), _SHOWN_LIMIT)
-        raise InvalidText(f"'{shown}' is no list of points [[x, y], ...]")
+        raise InvalidText(f"'{_shown(text)}' is no list of points [[x, y], ...]")
     own = points["unit"]
     return [evaluate_pair(f"[{one}]{own}", unit) for one in re.findall(r"\[([^][]*)\]", points["points"])]
 
 
 def is_written(value: object) -> bool:
     """Whether a value is a text, or a list or tuple with one in it."""
-    return isinstance(value, str) or (
-        isinstance(value, list | tuple) and any(isinstance(part, str) for part in value)
-    )
+    parts = value if isinstance(value, list | tuple) else (value,)
+    return any(isinstance(part, str) for part in parts)
 
 
 def evaluate_as(kind: str, value: Any, unit: str = "1") -> Any:
