@@ -582,7 +582,7 @@ def test_a_call_that_may_be_made_once_more_copies_no_table_of_impacts(longest: f
     assert bool(late) == compiles
     assert bits(world) == bits(expected)
     assert world.contacts.impacts.tobytes() == expected.contacts.impacts.tobytes() != b""
-    assert most < 0.1 * world.contacts.log.nbytes
+    assert most < 0.5 * world.contacts.log.nbytes  # a copy would be all of it
 
 
 @pytest.mark.parametrize(
