@@ -47,7 +47,7 @@ class Repeat:
     ) -> Self | None:  # fmt: skip
         """Return how the ``last`` stepper's call is made again; ``None`` where more is to be done in each.
 
-        That was the call of ``before``, if any, which then is returned.
+        ``before`` is how that call was made again itself, if it was; that is then returned.
         """
         if before is not None and before.stepper is last:
             if not last.goes_on(state):
