@@ -168,6 +168,6 @@ def _way(vector: Vector2, own: Language) -> str:
 
 
 def _number(value: float, own: Language, scale: float = 0.0) -> str:
-    """Return a number to four figures, a large one in full; 0 where it is rounding beside ``scale``."""
+    """Return a number to four figures, below 1e15 in full; 0 where it is rounding beside ``scale``."""
     rounded = float(f"{value if abs(value) > _ZERO_SUM_SHARE * scale else 0.0:.4g}")
     return own.decimal(f"{rounded:.15g}")
