@@ -163,7 +163,7 @@ class World(Facade):
             self.time = start
 
     def attempt(self, h: float, steps: int, bears: float, repeat: Repeat | None = None) -> int:
-        """Advance, if by a call to ``repeat``; raise ``Overloaded`` for loads on joints beyond ``bears``."""
+        """Advance, by ``repeat`` where given; raise ``Overloaded`` for loads on joints beyond ``bears``."""
         if self.stale:  # as where a step was undone
             self._follow(numbers=True)
         with StepTransaction(self, self._motion):
@@ -213,7 +213,7 @@ class World(Facade):
         return made
 
     def _make(self, h: float, steps: int, repeat: Repeat | None = None) -> Advance:
-        """Make steps with the best stepper for the coming one, with its kernels compiled, or ``repeat``."""
+        """Make steps by ``repeat``, or the best stepper for the coming one, with its kernels compiled."""
         self.stepper = stepper = self.stepper_for(h) if repeat is None else repeat.stepper
         self.steppers.use(stepper)
         self.compile(stepper.kernels)

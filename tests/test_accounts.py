@@ -50,8 +50,9 @@ from physicslab.kernels import accounts as rows
 from physicslab.prefabs import box, circle, pendulum
 from physicslab.scenes import SCENES
 from physicslab.state.masses import Diverged
+from physicslab.state.state import State
 from physicslab.systems.standard import standard_systems
-from physicslab.systems.system import ForceSystem, Stage, at
+from physicslab.systems.system import ForceSystem, Stage, System, at
 from physicslab.world import World
 
 SMALL = ("drop", "pendulum", "slope", "stack", "newtons_cradle", "two_planets", "bounces", "dominoes")
@@ -446,8 +447,19 @@ def test_what_turns_a_point_mass_on_against_a_spring_is_driven(damping: float) -
     assert abs(account.energy["numerical"]) < 2e-3 * abs(account.energy["hand"])
 
 
+class LooksAtKicks(System):
+    """Makes steps those of contacts, though nothing can touch."""
+
+    @at(Stage.KICK)
+    def look(self, state: State, h: float) -> None:
+        """Do nothing."""
+
+
+@pytest.mark.parametrize("beside", ["disc", "system"])
 @pytest.mark.parametrize("cause", ["fields", "damping"])
-def test_what_a_pool_gives_and_takes_by_kicks_is_that_of_fields_and_of_damping(cause: str) -> None:
+def test_what_a_pool_gives_and_takes_by_kicks_is_that_of_fields_and_of_damping(
+    cause: str, beside: str
+) -> None:
     """A box comes in by a side wall, where the pressure of the fluid works; drag is of the first order."""
     errors = []
     for dt in (1 / 120, 1 / 480):
@@ -457,7 +469,10 @@ def test_what_a_pool_gives_and_takes_by_kicks_is_that_of_fields_and_of_damping(c
             Transform((3, -1)), Shape.box(4.0, 4.0), Medium(density=50.0, viscosity=drag, flow=(0.5, 0.0))
         )
         box(world, (0, 0), width=0.6, height=0.4, mass=10.0, velocity=(2.0, 0.0), angle=0.3)
-        circle(world, (-2, 0))
+        if beside == "disc":
+            circle(world, (-2, 0))
+        else:
+            world.install(LooksAtKicks())
         world.run(seconds=0.7)
         account = measure_account(world)
         assert abs(account.energy[cause]) > 1.0

@@ -465,7 +465,7 @@ def test_shares_and_lengths_that_are_out_of_the_ordinary() -> None:
 
 
 def test_energy_that_is_all_of_the_start_has_no_bar_of_where_it_came_from() -> None:
-    """What gives less than a hundredth has no name there: the bar had one part, and moved all below it."""
+    """A part below a hundredth has no name there: the bar had one part, and moved all below it."""
     desk = sized((1280, 800), load_scene("drop"))
     tap(desk, "space")
     desk.window.selection.take(desk.world.entity("ball"))

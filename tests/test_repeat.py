@@ -8,9 +8,12 @@ import pytest
 
 from physicslab import load_scene
 from physicslab.components import Mass, Material, Transform, Velocity
-from physicslab.prefabs import circle
+from physicslab.prefabs import box, circle
+from physicslab.state.state import State
 from physicslab.stepping import repeat
 from physicslab.stepping.stepper import Advancer
+from physicslab.systems.standard import standard_systems
+from physicslab.systems.system import Stage, System, at
 from physicslab.world import World
 
 SCENES = (
@@ -116,3 +119,32 @@ def test_steps_are_repeated_while_nothing_is_edited(name: str, monkeypatch: pyte
     before = len(full)
     world.step()
     assert len(full) > before
+
+
+class Writes(System):
+    """Throws all that moves upwards, and makes it heavier, at the end of the 21st step."""
+
+    @at(Stage.IMPACT)
+    def write(self, state: State, h: float) -> None:
+        """Write speeds [m/s] and masses [kg]."""
+        if state.steps == 20:
+            rows = state.batch(Velocity, Mass).rows
+            state.table(Velocity)["linear"][rows] = (0.0, 5.0)
+            state.table(Mass)["mass"][rows] = 7.0
+
+
+@pytest.mark.parametrize(("height", "stepper"), [(0.5, "rigid"), (50.0, "event_driven")])
+def test_speeds_and_masses_that_a_system_writes_at_impacts_are_those_of_the_next_step(
+    height: float, stepper: str
+) -> None:
+    world = World(systems=(*standard_systems(), Writes()))
+    world.simulation = replace(world.simulation, collisions="exact" if height > 1.0 else "auto")
+    box(world, (0, -0.5), width=8, height=1, static=True)
+    thrown = circle(world, (0.0, height), radius=0.5)
+    for _ in range(21):
+        world.step()
+    reached = world.component(thrown, Transform).position.y
+    world.step()
+    assert world.stepper is not None and world.stepper.name == stepper
+    assert world.component(thrown, Transform).position.y > reached + 4.0 * world.simulation.dt
+    assert world.bodies.inverse_mass[world.entity_index.row_of[thrown]] == pytest.approx(1.0 / 7.0)

@@ -90,7 +90,7 @@ class PhysicsConfig:
     linear_damping: float = _setting(0.0, "number", "rate at which velocities decay", unit="1/s", minimum=0.0)
     angular_damping: float = _setting(0.0, "number", "rate at which spins decay", unit="1/s", minimum=0.0)
     bounds: tuple[float, float, float, float] | None = _setting(
-        None, "box", "walls of the world", unit="m", limit=COORDINATE_LIMIT, derived="no walls"
+        None, "box", "walls at xmin, ymin, xmax, ymax", unit="m", limit=COORDINATE_LIMIT, derived="no walls"
     )
     bounds_restitution: float = _setting(0.5, "number", "restitution of the walls", minimum=0.0, maximum=1.0)
     bounds_friction: float = _setting(0.3, "number", "Coulomb friction coefficient of the walls", minimum=0.0)

@@ -283,7 +283,9 @@ def _points(field: Field, value: object) -> int | None:
 
 
 def _box(field: Field, value: object) -> tuple[float, float, float, float] | None:
-    if not isinstance(value, tuple | list | np.ndarray) or len(value) != 4:
+    if isinstance(value, np.ndarray):
+        value = value.tolist()
+    if not isinstance(value, tuple | list) or len(value) != 4:
         return None
     low, high = _vector(field, value[:2]), _vector(field, value[2:])
     return (*low, *high) if low and high and low[0] < high[0] and low[1] < high[1] else None

@@ -86,7 +86,6 @@ _UNCLEAR = (
 )  # fmt: skip
 """Texts that can be read as different numbers."""
 _SPACED = re.compile(r"(?<=[A-Za-zµ°π0-9)])[ ·]+(?=[A-Za-zµ°π(])")
-
 _QUOTED = re.compile(r'"([^"]*)"')
 """A name that is no plain word, as ``"box 2"`` in ``"box 2".y``."""
 _ROW = re.compile(r"\s*\[(?P<parts>[^][]*)\](?P<unit>[^][]*)")
@@ -296,12 +295,10 @@ def same_dimension(first: Quantity, second: Quantity, text: str) -> None:
 
 def _evaluate_row(text: str, unit: str, count: int, noun: str) -> tuple[float, ...]:
     """Return so many numbers in an SI unit; a unit behind the brackets is that of all."""
-    row = _ROW.fullmatch(text)
-    parts = [] if row is None else row["parts"].split(",")
-    if row is None or len(parts) != count:
+    if (row := _ROW.fullmatch(text)) is None or row["parts"].count(",") != count - 1:
         raise InvalidText(f"'{_shown(text)}' is no {noun}")
     own = row["unit"].strip()
-    return tuple(evaluate(f"({part.strip()}) {own}" if own else part, unit) for part in parts)
+    return tuple(evaluate(f"({one.strip()}) {own}" if own else one, unit) for one in row["parts"].split(","))
 
 
 def evaluate_points(text: str, unit: str = "1") -> list[tuple[float, float]]:
@@ -320,9 +317,8 @@ def evaluate_points(text: str, unit: str = "1") -> list[tuple[float, float]]:
 
 def is_written(value: object) -> bool:
     """Whether a value is a text, or a list or tuple with one in it."""
-    return isinstance(value, str) or (
-        isinstance(value, list | tuple) and any(isinstance(part, str) for part in value)
-    )
+    parts = value if isinstance(value, list | tuple) else (value,)
+    return any(isinstance(part, str) for part in parts)
 
 
 def evaluate_as(kind: str, value: Any, unit: str = "1") -> Any:

@@ -289,7 +289,7 @@ class OdeSystem:
         return before
 
     def was_apart(self, before: NDArray[np.float64]) -> bool:
-        """Whether joints were apart by more than a method errs, by coordinates (n,) before they were not."""
+        """Whether coordinates (n,) ``before`` joints were put together differ by more than a method errs."""
         if before.tobytes() == self.q[: len(before)].tobytes():  # which is found in a tenth of the time
             return False
         moved, size = way_and_size(before, self.q[: len(before)])

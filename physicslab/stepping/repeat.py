@@ -3,6 +3,7 @@
 from typing import Self
 
 from physicslab.state.state import State
+from physicslab.stepping.accounting import acts_unbooked
 from physicslab.stepping.asleep import Asleep
 from physicslab.stepping.islands import Islands
 from physicslab.stepping.select import Steppers
@@ -46,7 +47,7 @@ class Repeat:
     ) -> Self | None:  # fmt: skip
         """Return how the ``last`` stepper's call is made again; ``None`` where more is to be done in each.
 
-        That was the call of ``before``, if any, which then is returned.
+        ``before`` is how that call was made again itself, if it was; that is then returned.
         """
         if before is not None and before.stepper is last:
             if not last.goes_on(state):
@@ -58,8 +59,8 @@ class Repeat:
         first = next(one for one in steppers.usable if not isinstance(one, Asleep))
         if last is None or not (last is first or last.yields or isinstance(last, Islands)):
             return None
-        if not last.samples or schedule.observer is not None:
-            return None
+        if not last.samples or schedule.observer is not None or any(map(acts_unbooked, schedule.running)):
+            return None  # what is written within a call, as at impacts, is an edit that is not seen behind it
         compiled = all(kernel.compiled for kernel in last.kernels)
         return cls(state, last, h) if compiled and last.goes_on(state) else None
 

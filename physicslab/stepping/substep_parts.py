@@ -133,10 +133,10 @@ class SubstepParts:
             if flown:
                 self._hook(lambda state, h: accounts.begin_impacts(state))
             reason = self._add_systems(state, stage, systems, share)
-            if stage is Stage.RELAX and accounts.notes_forces:
-                self._hook(accounts.book_works)
             if flown:
                 self._hook(lambda state, h: accounts.book_impacts(state))
+        if stage is Stage.RELAX and accounts.notes_forces:
+            self._hook(accounts.book_works)
         if split is not None and stage is Stage.DRIFT:
             flow = soft.SPRINGS
             for part in split.parts:

@@ -105,7 +105,7 @@ class JointForces(ForceSystem):
 
 
 def solved_rows(whole: NDArray[np.int64]) -> tuple[NDArray[np.int64], ...]:
-    """Return rows of joints (n,), where their forces and pivots are: these zero if they depend on others."""
+    """Return rows of joints, and places of their forces and pivots (n,), which are 0 for dependent rows."""
     n = int(whole[packing.ROWS])
     places = whole[packing.FIRST : packing.FIRST + packing.PLACES * n].reshape(n, packing.PLACES)
     states = packing.GIVEN * n + 2 * int(whole[packing.COORDINATES])
