@@ -89,6 +89,8 @@ _SPACED = re.compile(r"(?<=[A-Za-zµ°π0-9)])[ ·]+(?=[A-Za-zµ°π(])")
 _QUOTED = re.compile(r'"([^"]*)"')
 """A name that is no plain word, as ``"box 2"`` in ``"box 2".y``."""
 _ROW = re.compile(r"\s*\[(?P<parts>[^][]*)\](?P<unit>[^][]*)")
+_ROWS = {"vector": (2, "pair"), "box": (4, "row of four numbers")}
+"""Kinds of fields that are rows of numbers: how many, and what that is called."""
 _POINTS = re.compile(r"\s*\[(?P<points>\s*(?:\[[^][]*\]\s*,?\s*)*)\](?P<unit>[^][]*)")
 
 
@@ -291,21 +293,12 @@ def same_dimension(first: Quantity, second: Quantity, text: str) -> None:
         raise InvalidText(f"'{_shown(text)}': {words} cannot be compared")
 
 
-def evaluate_pair(text: str, unit: str = "1") -> tuple[float, float]:
-    """Return two numbers in an SI unit; a unit behind the brackets is that of both.
-
-    >>> evaluate_pair("[1 + 1, 3] cm", "m"), evaluate_pair("[20 mm, 0.5]", "m")
-    ((0.02, 0.03), (0.02, 0.5))
-    """
-    x, y = _evaluate_row(text, unit, 2, "pair")
-    return x, y
-
-
-def _evaluate_row(text: str, unit: str, count: int, noun: str) -> list[float]:
+def _evaluate_row(text: str, unit: str, count: int, noun: str) -> tuple[float, ...]:
+    """Return so many numbers in an SI unit; a unit behind the brackets is that of all."""
     if (row := _ROW.fullmatch(text)) is None or row["parts"].count(",") != count - 1:
         raise InvalidText(f"'{_shown(text)}' is no {noun}")
     own = row["unit"].strip()
-    return [evaluate(f"({part.strip()}) {own}" if own else part, unit) for part in row["parts"].split(",")]
+    return tuple(evaluate(f"({one.strip()}) {own}" if own else one, unit) for one in row["parts"].split(","))
 
 
 def evaluate_points(text: str, unit: str = "1") -> list[tuple[float, float]]:
@@ -318,7 +311,8 @@ def evaluate_points(text: str, unit: str = "1") -> list[tuple[float, float]]:
     if points is None:
         raise InvalidText(f"'{_shown(text)}' is no list of points [[x, y], ...]")
     own = points["unit"]
-    return [evaluate_pair(f"[{one}]{own}", unit) for one in re.findall(r"\[([^][]*)\]", points["points"])]
+    found = re.findall(r"\[[^][]*\]", points["points"])
+    return [(x, y) for x, y in (_evaluate_row(one + own, unit, *_ROWS["vector"]) for one in found)]
 
 
 def is_written(value: object) -> bool:
@@ -334,8 +328,8 @@ def evaluate_as(kind: str, value: Any, unit: str = "1") -> Any:
     ----------
     kind : str
         ``"number"``, ``"whole"``, ``"vector"``, ``"points"`` or ``"box"``, four numbers.
-    value : str, or pair
-        What :func:`evaluate`, :func:`evaluate_pair` and :func:`evaluate_points` take; a pair of texts and
+    value : str, number or sequence
+        What :func:`evaluate` and :func:`evaluate_points` take, or a row in brackets; a list of texts and
         numbers too.
     unit : str
         Unit of a number that has none of its own.
@@ -349,14 +343,14 @@ def evaluate_as(kind: str, value: Any, unit: str = "1") -> Any:
     --------
     >>> evaluate_as("vector", ("20 cm", 1), "m"), evaluate_as("whole", "2*8")
     ((0.2, 1), 16)
+    >>> evaluate_as("vector", "[1 + 1, 3] cm", "m"), evaluate_as("vector", "[20 mm, 0.5]", "m")
+    ((0.02, 0.03), (0.02, 0.5))
     """
     if kind == "points":
         return evaluate_points(value, unit) if isinstance(value, str) else value
-    if kind == "box":
-        return _evaluate_row(value, unit, 4, "row of four numbers")
-    if kind == "vector":
+    if kind in _ROWS:
         if isinstance(value, str):
-            return evaluate_pair(value, unit)
+            return _evaluate_row(value, unit, *_ROWS[kind])
         return tuple(evaluate(part, unit) if isinstance(part, str) else part for part in value)
     number = evaluate(value, unit) if isinstance(value, str) else value
     return int(number) if kind == "whole" and isinstance(number, float) and number.is_integer() else number
