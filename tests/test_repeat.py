@@ -133,6 +133,29 @@ class Writes(System):
             state.table(Mass)["mass"][rows] = 7.0
 
 
+class Counts(System):
+    """Counts how often it is called."""
+
+    def __init__(self) -> None:
+        self.calls = 0
+
+    @at(Stage.IMPACT)
+    def count(self, state: State, h: float) -> None:
+        self.calls += 1
+
+
+@pytest.mark.parametrize(("height", "stepper"), [(0.5, "rigid"), (50.0, "event_driven")])
+def test_a_run_calls_what_looks_at_impacts_once_a_step(height: float, stepper: str) -> None:
+    counts = Counts()
+    world = World(systems=(*standard_systems(), counts))
+    world.simulation = replace(world.simulation, collisions="exact" if height > 1.0 else "auto")
+    box(world, (0, -0.5), width=8, height=1, static=True)
+    circle(world, (0.0, height), radius=0.5)
+    world.run(steps=30)
+    assert world.stepper is not None and world.stepper.name == stepper
+    assert counts.calls == 30
+
+
 @pytest.mark.parametrize(("height", "stepper"), [(0.5, "rigid"), (50.0, "event_driven")])
 def test_speeds_and_masses_that_a_system_writes_at_impacts_are_those_of_the_next_step(
     height: float, stepper: str

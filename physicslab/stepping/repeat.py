@@ -3,7 +3,6 @@
 from typing import Self
 
 from physicslab.state.state import State
-from physicslab.stepping.accounting import acts_unbooked
 from physicslab.stepping.asleep import Asleep
 from physicslab.stepping.islands import Islands
 from physicslab.stepping.select import Steppers
@@ -59,7 +58,7 @@ class Repeat:
         first = next(one for one in steppers.usable if not isinstance(one, Asleep))
         if last is None or not (last is first or last.yields or isinstance(last, Islands)):
             return None
-        if not last.samples or schedule.observer is not None or any(map(acts_unbooked, schedule.running)):
+        if not last.samples or schedule.observer is not None:
             return None  # what is written within a call, as at impacts, is an edit that is not seen behind it
         compiled = all(kernel.compiled for kernel in last.kernels)
         return cls(state, last, h) if compiled and last.goes_on(state) else None

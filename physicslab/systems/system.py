@@ -152,8 +152,8 @@ class System:
 
     @classmethod
     def observes(cls) -> bool:
-        """Whether the system is called at the beginning or the end of every step."""
-        return not AROUND.isdisjoint(cls.marked())
+        """Whether it is called around every step, or, as none of the engine's, at the impacts of each."""
+        return not AROUND.isdisjoint(cls.marked()) or (not cls.engine and Stage.IMPACT in cls.marked())
 
     @classmethod
     @cache  # the steppers of a world are chosen again whenever its laws are edited
