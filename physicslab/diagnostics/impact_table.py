@@ -120,10 +120,9 @@ def read_impacts(records: NDArray[Any]) -> ImpactColumns:
     """
     vn_before, vt_before = speeds_at(records, records["x"], records["y"], "before")
     vn_after, vt_after = speeds_at(records, records["x"], records["y"], "after")
-    # A resting pair that passes an impact on approaches by rounding at most.
     moved = records["normal_impulse"] * (records["inverse_mass_a"] + records["inverse_mass_b"])
     with np.errstate(all="ignore"):
-        e_found = np.where(vn_before < -_STICKS * moved, -vn_after / vn_before, np.nan)
+        e_found = np.where(approached(vn_before, moved), -vn_after / vn_before, np.nan)
     none = np.abs(vt_after) <= _STICKS * (np.abs(vn_before) + np.abs(vt_before))
     normal, tangent = records["normal_impulse"], records["tangent_impulse"]
     normal_2, tangent_2 = records["normal_impulse_2"], records["tangent_impulse_2"]
@@ -134,6 +133,14 @@ def read_impacts(records: NDArray[Any]) -> ImpactColumns:
         vn_before, vn_after, vt_before, vt_after, e_found, none & (records["friction"] > 0.0),
         0.0 - 0.5 * work,
     )  # fmt: skip
+
+
+def approached(vn: Any, moved: Any) -> Any:
+    """Return whether pairs that parted at vn (n,) [m/s] met, in an impact that ``moved`` them (n,) [m/s].
+
+    A resting pair that an impact of others goes through does so by rounding at most. Numbers or arrays.
+    """
+    return vn < -_STICKS * moved
 
 
 def first_and_last(state: State, since: int) -> NDArray[Any]:

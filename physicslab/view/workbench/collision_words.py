@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from physicslab.diagnostics.collision import ENERGETIC, LOWERED, Body, Collision, Result
-from physicslab.diagnostics.impact_table import WALLS
+from physicslab.diagnostics.impact_table import WALLS, approached
 from physicslab.ecs.text import printable
 from physicslab.ecs.vector import Vector2
 from physicslab.languages.sentence import Sentence
@@ -68,7 +68,7 @@ def story(collision: Collision, result: Result, names: tuple[str, str]) -> list[
     vn, vt = collision.approach(spot)
     left, slides = collision.approach(spot, after=True)
     moved = collision.normal_impulse * (collision.a.inverse_mass + collision.b.inverse_mass)
-    rested = vn >= -AGREES * moved
+    rested = not approached(vn, moved)
     told: list[str] = [_who(collision, names, "" if rested else quantity(-vn, "m/s"))]
     told.append(_bounce(collision, result, 0.0 if rested else -left / vn))
     told.append("These speeds are along the normal n of the contact.")
