@@ -68,7 +68,7 @@ def test_the_panel_lists_the_materials() -> None:
     desk.window.selection.entities = (ball,)
     desk.key("space")
     desk.frames(SETTLED)
-    assert "not said" in desk.ui.words
+    assert "unspecified" in desk.ui.words
     choose_material(world, desk.window, (ball,), "ice")
     desk.frames(SETTLED)
     assert "ice" in desk.ui.words

@@ -10,15 +10,15 @@ from physicslab.view.window.placing import area_of
 from physicslab.view.window.window import Window
 from physicslab.world import World
 
-OWN = "my material"
-"""The name of a material of one's own, until it has another."""
+OWN, UNSPECIFIED = "my material", "unspecified"
+"""The name of a material of one's own, until it has another; the word where a body is made of none."""
 
 
 def materials(world: World) -> dict[str | None, str]:
     """Return what bodies can be made of, with words for each: the table, names of this scene, one's own."""
     batch = world.batch(MadeOf)
     own = {world.component(entity, MadeOf).material for entity in batch.entities.tolist()} - SUBSTANCES.keys()
-    return {name: name for name in [*SUBSTANCES, *sorted(own | {OWN})]} | {None: "not said"}
+    return {name: name for name in [*SUBSTANCES, *sorted(own | {OWN})]} | {None: UNSPECIFIED}
 
 
 def made_of(world: World, entity: int) -> str | None:

@@ -27,7 +27,7 @@ from physicslab.view.overlay.forces import Measured
 from physicslab.view.overlay.instruments import readings_of
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window import changing
-from physicslab.view.window.materials import choose_material, made_of, materials
+from physicslab.view.window.materials import UNSPECIFIED, choose_material, made_of, materials
 from physicslab.view.window.window import Window
 from physicslab.view.workbench.component_rows import ORDER, ComponentRows
 from physicslab.view.workbench.number_field import NumberFields
@@ -265,7 +265,7 @@ def _build_material(ui: Ui, numbers: NumberFields, world: World, window: Window)
     names = {made_of(world, entity) for entity in _differing(world, chosen, MadeOf, "material")}
     now = names.pop() if len(names) == 1 else None
     numbers.label(ui, "MadeOf", "Made of", _MADE_OF)
-    picked = ui.choice("MadeOf", now, lambda: materials(world), shown="not said" if now is None else now)
+    picked = ui.choice("MadeOf", now, lambda: materials(world), shown=now or UNSPECIFIED)
     if now in SUBSTANCES:
         ui.tip(SUBSTANCES[now].source)
     if picked != now and picked is not None:

@@ -24,6 +24,7 @@ from physicslab.view.toolkit.style import packed
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.desk import LEVELS
 from physicslab.view.window.edits import Recipe
+from physicslab.view.window.materials import UNSPECIFIED
 from physicslab.view.window.window import Window
 from physicslab.view.workbench.figures import Line, WorldFigures
 from physicslab.view.workbench.number_field import NumberFields
@@ -386,7 +387,6 @@ def _change(
     window.edits.do(command({name: value}))
 
 
-_UNSAID = "not said"
 _MADE_OF = Field("material", "choice", meaning="sets density, restitution, friction and colour")
 _ZERO = {"size": "in turn"}
 """Words for a 0 that is no number: sizes that differ from one body to the next."""
@@ -398,8 +398,8 @@ def build_recipe(ui: Ui, numbers: NumberFields, drawn: Drawn, window: Window) ->
     ui.heading(f"Next {drawn.title.split()[-1].lower()}")
     has = {"size": bool(drawn.per_size) or drawn.pours, "density": not drawn.is_fixed}
     numbers.label(ui, "new material", "Made of", _MADE_OF)
-    now = window.recipe.material or _UNSAID
-    if (chosen := ui.choice("new material", now, (*SUBSTANCES, _UNSAID))) != now:
+    now = window.recipe.material or UNSPECIFIED
+    if (chosen := ui.choice("new material", now, (*SUBSTANCES, UNSPECIFIED))) != now:
         window.do_next(lambda _, window: window.put("recipe", window.recipe.of(chosen)))
     for spec in Recipe.FIELDS:
         if not has.get(spec.name, True):
