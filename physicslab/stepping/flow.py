@@ -65,7 +65,7 @@ class Flow(Stepper):
         self._schedule, self._plan, self._method = schedule, plan, plan.integrator
         self._ode = OdeSystem(state, schedule.smooth_forces, kicked=self._method.kicks)
         self._ode.tolerance = tolerance_for(state, schedule.forces)
-        self._joined, self._unedited = schedule.find(JointSystem) is not None, False
+        self._joined = schedule.find(JointSystem) is not None
         self.kernels: tuple[Any, ...] = self._method.kernels
         self.reason = plan.reason
 
@@ -94,7 +94,7 @@ class Flow(Stepper):
         if state.joints.breakable and (state.samples is None or state.samples.stride > 1):
             longest = whole  # loads are known at the ends of steps that are sampled
         most = MAX_COSTLY * max(1, math.ceil(h / _COSTLY_S))
-        made, span, short, unedited = 0, longest, h / parts / whole, self._unedited
+        made, span, short, unedited = 0, longest, h / parts / whole, self.is_repeated
         left = most  # evaluations that the step may have that is being made
         try:
             while made < parts * steps * whole:
@@ -130,14 +130,6 @@ class Flow(Stepper):
     def goes_on(self, state: State) -> bool:
         """Whether no force is one in Python, which may depend on anything."""
         return not self._ode.interpreted
-
-    def repeat(self, state: State, h: float, steps: int) -> Advance:
-        """Make steps as in the last call, under its laws."""
-        self._unedited = True
-        try:
-            return self.advance(state, h, steps)
-        finally:
-            self._unedited = False
 
     def repeatable(self, state: State, stretches: Sequence[Stretch]) -> Callable[[], bool]:
         """Return what makes steps from the present places and velocities; see :class:`Repeatable`."""

@@ -97,7 +97,6 @@ class Rigid(Stepper):
         self._resting: tuple[object, ...] | None = None
         self._laws: tuple[Any, ...] = ()
         self._scene: tuple[Any, ...] = ()
-        self._unedited = False
         self._unmoved: NDArray[np.int64] = np.zeros(0, np.int64)
         self.energetic_impacts = self.restitutions_lowered = self.by_impulses = 0
         self.why_impulses, self.energy_added = "", 0.0
@@ -123,21 +122,13 @@ class Rigid(Stepper):
         """Whether no force is one in Python, which may depend on anything, and the next step is its own."""
         return self._goes_on and not self._ode.interpreted
 
-    def repeat(self, state: State, h: float, steps: int) -> Advance:
-        """Make steps as in the last call, under its laws."""
-        self._unedited = True
-        try:
-            return self.advance(state, h, steps)
-        finally:
-            self._unedited = False
-
     def advance(self, state: State, h: float, steps: int) -> Advance:
         """Make the steps, or those before the first that it cannot make and is not ready for.
 
         In a scene of impacts it ends where no body is held by another: the next step may be a flight.
         """
         began, parts = time.perf_counter_ns(), divisions(state, h)
-        if self._ode.gather(state, unedited=self._unedited):
+        if self._ode.gather(state, unedited=self.is_repeated):
             self._ode.set_going()
         else:
             put_together(state, self._schedule.forces, self._ode)

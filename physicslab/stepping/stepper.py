@@ -145,6 +145,8 @@ class Stepper(Advancer, Protocol):
     leaves_forces: bool = False
     samples: bool = False
     yields: bool = False
+    is_repeated: bool = False
+    """Whether the call at hand is the last one made again: nothing was edited since."""
 
     def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None: ...
 
@@ -159,6 +161,14 @@ class Stepper(Advancer, Protocol):
     def ready(self, state: State, h: float) -> bool:
         """Return True: it can make any step."""
         return True
+
+    def repeat(self, state: State, h: float, steps: int) -> Advance:
+        """Make steps as in the last call, under its laws."""
+        self.is_repeated = True
+        try:
+            return self.advance(state, h, steps)
+        finally:
+            self.is_repeated = False
 
 
 def divisions(state: State, h: float) -> int:
