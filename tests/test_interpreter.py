@@ -12,7 +12,8 @@ import sys
 import time
 import tracemalloc
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -514,14 +515,10 @@ def orbit() -> World:
     return scene(sun, earth, physics={"gravity_mode": "planet"}, integrator="dop853")
 
 
-@pytest.mark.parametrize(("make", "jitted"), [(lambda: load_scene("drop"), run_events), (orbit, dop853)])
-def test_what_would_be_interpreted_for_too_long_is_compiled_first(
-    make: Callable[[], World], jitted: Any
-) -> None:
-    expected, world, late = make(), make(), []
-    for _ in range(3):
-        expected.step()
-    overloads = dict(jitted.overloads)
+@contextmanager
+def interpreted_up_to(world: World, jitted: Any, longest: float) -> Iterator[list[Any]]:
+    """Let a kernel be interpreted for so long [s] at most; yield the list of those that are compiled then."""
+    late, overloads = list[Any](), dict(jitted.overloads)
 
     def compile_now(kernel: Any) -> None:
         late.append(kernel)
@@ -530,15 +527,28 @@ def test_what_would_be_interpreted_for_too_long_is_compiled_first(
     world.synchronise()
     interpreter._set_aside(jitted)
     install(jitted)
-    interpreter.limit(lambda _: 1e-9, compile_now)
+    interpreter.limit(lambda _: longest, compile_now)
     ask_before_compiling(lambda missing: missing)
     try:
-        for _ in range(3):
-            world.step()
+        yield late
     finally:
         ask_before_compiling(None)
         interpreter.unlimited()
         interpreter.uninstall(jitted)
+        if not late:
+            interpreter._take_back(jitted, overloads)
+
+
+@pytest.mark.parametrize(("make", "jitted"), [(lambda: load_scene("drop"), run_events), (orbit, dop853)])
+def test_what_would_be_interpreted_for_too_long_is_compiled_first(
+    make: Callable[[], World], jitted: Any
+) -> None:
+    expected, world = make(), make()
+    for _ in range(3):
+        expected.step()
+    with interpreted_up_to(world, jitted, 1e-9) as late:
+        for _ in range(3):
+            world.step()
     assert late == [jitted]
     assert bits(world) == bits(expected)
 
@@ -552,33 +562,17 @@ def falling_box() -> World:
 @pytest.mark.parametrize(("longest", "compiles"), [(1e-9, True), (60.0, False)])
 def test_a_call_that_may_be_made_once_more_copies_no_table_of_impacts(longest: float, compiles: bool) -> None:
     """It has 34 MB, and to copy it took longer than an interpreted step of a few bodies."""
-    expected, world, late = falling_box(), falling_box(), []
-    jitted: Any = soft.advance
+    expected, world = falling_box(), falling_box()
     for _ in range(3):
         expected.step()
-    overloads = dict(jitted.overloads)
-
-    def compile_now(kernel: Any) -> None:
-        late.append(kernel)
-        interpreter._take_back(kernel, overloads)
-
-    world.synchronise()
-    interpreter._set_aside(jitted)
-    install(jitted)
-    interpreter.limit(lambda _: longest, compile_now)
-    ask_before_compiling(lambda missing: missing)
-    tracemalloc.start()
-    try:
-        for _ in range(3):
-            world.step()
-        _, most = tracemalloc.get_traced_memory()
-    finally:
-        tracemalloc.stop()
-        ask_before_compiling(None)
-        interpreter.unlimited()
-        interpreter.uninstall(jitted)
-        if not late:
-            interpreter._take_back(jitted, overloads)
+    with interpreted_up_to(world, soft.advance, longest) as late:
+        tracemalloc.start()
+        try:
+            for _ in range(3):
+                world.step()
+            _, most = tracemalloc.get_traced_memory()
+        finally:
+            tracemalloc.stop()
     assert bool(late) == compiles
     assert bits(world) == bits(expected)
     assert world.contacts.impacts.tobytes() == expected.contacts.impacts.tobytes() != b""
