@@ -12,6 +12,8 @@ import pytest
 from desk import bits
 
 from physicslab import cli
+from physicslab.components import Velocity
+from physicslab.ecs.vector import Vector2
 from physicslab.lab.bench import random_scenes
 from physicslab.lab.bench.catalogue import SCENES, gas_scene, pile_scene
 from physicslab.lab.bench.costs import UNUSED, measure_memory, measure_unused
@@ -19,13 +21,14 @@ from physicslab.lab.bench.engine import Engine, missing_peers
 from physicslab.lab.bench.measure import measure_scene
 from physicslab.lab.bench.random_scenes import random_scene
 from physicslab.lab.bench.result import TURN, SceneResult, exponent, growths, take_turns
-from physicslab.lab.bench.scene import BenchScene, Quality
+from physicslab.lab.bench.scene import BenchScene, Moment, Quality, energy_gained
 from physicslab.lab.bench.targets import Check
 from physicslab.lab.case import Catalogue
 from physicslab.lab.jobs import result_of
 from physicslab.lab.peers.mirrors import PymunkMirror
 from physicslab.lab.peers.peer import find_contacts
 from physicslab.lab.report import machine_text
+from physicslab.prefabs import circle
 from physicslab.state.masses import Diverged
 from physicslab.world import World
 
@@ -292,6 +295,22 @@ def test_the_command_runs_random_scenes_and_says_what_they_have(capsys: pytest.C
     (scene,) = document["scenes"]
     assert (document["format"], scene["name"]) == ("physicslab-bench-random/1", f"5:{number}")
     assert scene["path"] and scene["features"] and scene["systems_ms"]["beside systems"] >= 0.0
+
+
+def test_energy_that_comes_from_nothing_is_seen_as_a_share_of_the_motion() -> None:
+    world = World()
+    body = circle(world, (0.0, 0.0), radius=0.1, mass=2.0, velocity=(3.0, 0.0))
+    before = Moment.of(world)
+    for speed in (3.0, 1.0, 2.0, 1.0):
+        world.component(body, Velocity).linear = Vector2(speed, 0.0)
+        before.follow(world)
+    assert energy_gained(0.1).measure(world, before) == pytest.approx((4.0 - 1.0) / 9.0)
+
+
+def test_a_random_scene_gains_no_energy_unless_something_drives_it() -> None:
+    drawn = [random_scene(1, number) for number in range(60)]
+    for scene, features in drawn:
+        assert ("energy gained" in {quality.name for quality in scene.quality}) == ("mover" not in features)
 
 
 def test_contacts_are_found_in_a_world_of_many_islands() -> None:

@@ -158,9 +158,10 @@ class Judge:
         for engine in engines if due else ():
             if not self._copy(engine):
                 continue
-            found = self._result.engines[engine.title].quality
+            found, before = self._result.engines[engine.title].quality, self._before[engine.title]
+            before.follow(self._world)
             for quality in due:
-                figure = quality.measure(self._world, self._before[engine.title])
+                figure = quality.measure(self._world, before)
                 if when == "throughout":
                     figure = max(figure, found.get(quality.name) or 0.0)
                 found[quality.name] = figure if math.isfinite(figure) else None

@@ -14,7 +14,7 @@ import numpy as np
 from physicslab.components import Drag, Mass, Pin, Shape, Spring, Transform, Velocity
 from physicslab.components.vertices import regular
 from physicslab.ecs.vector import Vector2
-from physicslab.lab.bench.scene import BenchScene, largest_overlap, stretched
+from physicslab.lab.bench.scene import BenchScene, energy_gained, largest_overlap, stretched
 from physicslab.lab.worlds import GRAVITY, floor, soft_space
 from physicslab.prefabs import BodyOptions, box, container
 from physicslab.prefabs.body import body
@@ -34,6 +34,8 @@ _OVERLAP = 0.25
 """Deepest overlap that counts as right, as a share of the largest body's size."""
 _STRETCH = 0.05
 """Largest error of a joint that counts as right, as a share of the same."""
+_GAIN = 0.05
+"""Largest rise of the energy that counts as right, as a share of the largest kinetic energy."""
 _SHAPES = ("discs", "boxes", "polygons", "capsules", "mixed")
 
 
@@ -339,8 +341,9 @@ def _build(seed: int, number: int) -> World:
 def random_scene(seed: int, number: int) -> tuple[BenchScene, list[str]]:
     """Return a scene of the series of a seed, and its features."""
     drawn = _drawn(seed, number)
+    kept = () if drawn.mover else (energy_gained(_GAIN),)  # movers do work
     return BenchScene(
         name=f"{seed}:{number}", title=f"{drawn.family} of about {drawn.count:,}", group=drawn.family,
         size=drawn.count, build=partial(_build, seed, number), seconds=0.0,
-        quality=(largest_overlap(_OVERLAP * _LARGEST), stretched(_STRETCH * _LARGEST)),
+        quality=(largest_overlap(_OVERLAP * _LARGEST), stretched(_STRETCH * _LARGEST), *kept),
     ), drawn.features  # fmt: skip

@@ -27,9 +27,9 @@ type Inside = Callable[[Places], NDArray[np.bool_]]
 """Returns which positions are where bodies may be (n,)."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class Moment:
-    """A world as it was.
+    """A world as it was, and its energy in the looks since then.
 
     Attributes
     ----------
@@ -37,16 +37,29 @@ class Moment:
         Where its bodies were [m].
     energy : float
         Their energy [J].
+    least, gained, kinetic : float
+        The least energy since then, the most that any later one was above it, and the largest kinetic
+        energy [J].
     """
 
     positions: Places
     energy: float
+    least: float
+    gained: float = 0.0
+    kinetic: float = 0.0
 
     @classmethod
     def of(cls, world: World) -> Moment:
         """Note how a world is now."""
         world.synchronise()
-        return cls(world.table(Transform)["position"].copy(), measure_energy(world).total)
+        energy = measure_energy(world).total
+        return cls(world.table(Transform)["position"].copy(), energy, energy)
+
+    def follow(self, world: World) -> None:
+        """Take the energy of the world into account as it is now."""
+        now = measure_energy(world)
+        self.least, self.kinetic = min(self.least, now.total), max(self.kinetic, now.kinetic)
+        self.gained = max(self.gained, now.total - self.least)
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,6 +113,10 @@ def _energy(world: World, before: Moment) -> float:
     return abs(measure_energy(world).total / before.energy - 1.0)
 
 
+def _energy_gained(world: World, before: Moment) -> float:
+    return before.gained / before.kinetic if before.gained > 0.0 else 0.0
+
+
 def _kinetic_energy(world: World, before: Moment) -> float:
     return measure_energy(world).kinetic
 
@@ -121,6 +138,10 @@ stretched = partial(Quality, "joint off", "m", measure=_stretch, when="throughou
 """Returns the largest error of a joint that was seen as a quality, with its limit [m]."""
 energy_change = partial(Quality, "energy change", "", measure=_energy)
 """Returns the change of the energy since the start as a quality, with its limit, as a share of it."""
+
+energy_gained = partial(Quality, "energy gained", "", measure=_energy_gained, when="end")
+"""Returns by how much the energy rose where it can only fall as a quality, with its limit, as a share of the
+largest kinetic energy."""
 
 
 def at_rest(energy: float, drift: float) -> tuple[Quality, Quality]:

@@ -37,7 +37,8 @@ BLOCK, PORTION, WARM = 5, 2, 2
 """Steps of a turn, turns between two looks at the quality, and steps before the timing, in which kernels are
 loaded and pairs are listed for the first time. Scenes that no engine is fit for take seconds a step."""
 _SLOP = 0.01
-"""A figure below it is treated as zero [m]: twice the slop of pymunk and of Box2D."""
+"""A figure below it is treated as zero: a length [m], twice the slop of pymunk and of Box2D, and the share of
+the kinetic energy that was gained."""
 _FINEST = 64
 """Most parts of a usual step."""
 _SLOWEST = 8.0
@@ -102,6 +103,7 @@ def measure_whole(scene: BenchScene, features: list[str], peers: Sequence[type[P
             if sum(sum(spent.step) for spent in times) * BLOCK > budget:
                 break
             yield len(times[0].step) * BLOCK / longest
+        judge.look(engines, "end")
     except Diverged as error:
         result.ours.failure = str(error)
         return WholeResult(result, features)
@@ -199,6 +201,8 @@ def _run(result: SceneResult, peer: type[Peer], finer: int, ours: Times) -> Job[
         yield 1.0
         if not reached:
             break
+    judge.look([engine], "end")
+    reached = reached and _is_alike(found, result.ours)
     return Alike(finer, spent / sum(ours.step[:steps]), reached)
 
 
@@ -287,7 +291,8 @@ def _whole(report: WholeReport) -> str:
                 f"{peer}, at like quality: steps of 1/{finer[len(finer) // 2]} of the usual "
                 f"(median); {missed} of {len(finer)} scenes not as right at the shortest that were tried"
             )
-    for quality in report.found[0].result.scene.quality:
+    measured = {quality.name: quality for one in report.found for quality in one.result.scene.quality}
+    for quality in measured.values():
         for name in (OURS, *report.peers):
             seen = [
                 one.result.engines[name].quality.get(quality.name)
@@ -297,8 +302,8 @@ def _whole(report: WholeReport) -> str:
             known = [figure for figure in seen if figure is not None]
             if known:
                 middle, most = np.quantile(known, (0.5, 1.0))
-                figures = f"median {middle:.2g} {quality.unit}, most {most:.2g} {quality.unit}"
-                lines.append(f"{quality.name}, {name}: {figures}")
+                middle, most = (f"{figure:.2g} {quality.unit}".rstrip() for figure in (middle, most))
+                lines.append(f"{quality.name}, {name}: median {middle}, most {most}")
     return "\n".join([table(rows), *lines])
 
 
