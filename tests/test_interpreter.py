@@ -387,9 +387,11 @@ def lone_sweeps() -> None:
     counts, manifolds, points, _, touching, *_ = near
     contacts = manifolds, points, touching, int(counts[ACTIVE])
     assert contacts[-1] > 10
-    for backward, booked in ((False, True), (True, False)):
+    last = np.full(len(inverse[0]), -1)
+    for number, booked in ((0, True), (1, False)):
         motion[2][...] += 0.1
-        sweep_contacts(contacts, motion, inverse, (240.0, 1.0, 0.9, 0.1, 10.0, 0.5, 0.1), backward, booked)
+        stirred = number, number - 1, last
+        sweep_contacts(contacts, motion, inverse, (240.0, 1.0, 0.9, 0.1, 10.0, 0.5, 0.1), stirred, booked)
 
 
 def recorded() -> None:

@@ -61,6 +61,7 @@ def near_in(state: State) -> Plain[Near]:
         contacts.rotations = np.full((rows, 3), np.nan)
         contacts.linear_before, contacts.angular_before = np.zeros((rows, 2)), np.zeros(rows)
         contacts.moments, contacts.travels = np.full((rows, 2), -np.inf), np.zeros((5, rows))
+        contacts.stirred = np.zeros(rows, np.int64)
     if len(contacts.noted) < len(contacts.points):
         contacts.noted = np.zeros((len(contacts.points), 4))
         contacts.apart = np.zeros(len(contacts.manifolds), APART)
@@ -69,7 +70,7 @@ def near_in(state: State) -> Plain[Near]:
         contacts.wide.discs.slots, contacts.wide.boxes.slots,
         contacts.proximity, contacts.activation_distance, state.entity_index.entities,
         contacts.rotations, state.account.table, contacts.noted, contacts.linear_before,
-        contacts.angular_before, contacts.moments, contacts.apart, contacts.travels,
+        contacts.angular_before, contacts.moments, contacts.apart, contacts.travels, contacts.stirred,
     )  # fmt: skip
 
 

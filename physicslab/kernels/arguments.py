@@ -68,7 +68,8 @@ class Near(NamedTuple):
     impulses of a substep (:mod:`physicslab.kernels.solver.work`); and for when each body last met another
     one in the substep, and when it meets the next [s from now] (:mod:`physicslab.kernels.solver.meet_again`).
     Last, how far apart pairs are, and how far bodies have come (5, rows)
-    (:mod:`physicslab.kernels.geometry.apart`).
+    (:mod:`physicslab.kernels.geometry.apart`); and in which sweep impulses changed each body last (rows,)
+    (:mod:`physicslab.kernels.constraint.stirred`).
     """
 
     counts: Rows
@@ -89,6 +90,7 @@ class Near(NamedTuple):
     moments: Vectors
     apart: Aparts
     travels: Vectors
+    stirred: Rows
 
 
 class Contacts(NamedTuple):
@@ -242,11 +244,12 @@ def named_near(plain: Plain[Near]) -> Near:
     (
         counts, manifolds, points, scalar, touching, discs, boxes, proximity, activation_distance, entities,
         rotations, account, noted, linear_before, angular_before, moments, apart, travels,
+        stirred,
     ) = plain  # fmt: skip
     return Near(
         counts, manifolds, points, scalar, touching, Slots(*discs), Slots(*boxes),
         proximity, activation_distance, entities, rotations, account, noted, linear_before, angular_before,
-        moments, apart, travels,
+        moments, apart, travels, stirred,
     )  # fmt: skip
 
 

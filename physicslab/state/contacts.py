@@ -164,6 +164,7 @@ class Contacts:
         self.moments: NDArray[np.float64] = np.zeros((0, 2))
         self.apart: NDArray[Any] = np.zeros(0, APART)
         self.travels: NDArray[np.float64] = np.zeros((5, 0))
+        self.stirred: NDArray[np.int64] = np.zeros(0, np.int64)
         self.table: NDArray[np.int64] = np.zeros(16, np.int64)
         self.sleeping: NDArray[np.int64] = np.zeros(capacity, np.int64)
         # Two sets of arrays take turns: new ones for every list would cost more in page faults than all else.

@@ -13,6 +13,7 @@ from typing import NamedTuple
 from physicslab.kernels import Vectors, always_inlined, inlined
 from physicslab.kernels.accounts import ENERGY, HAND, JOINTS, MOTORS, book
 from physicslab.kernels.arguments import Acting, Inverse, Motion
+from physicslab.kernels.constraint.stirred import SETTLED, Stirred, is_stirred, stir
 from physicslab.kernels.joints import blocks as B
 from physicslab.kernels.joints.blocks import (
     Joints,
@@ -28,8 +29,6 @@ HOLD, LIMIT, MOTOR = range(3)
 """Demand of a row (:class:`physicslab.state.joint_rows.Role`)."""
 _FASTEST, _DAMPING, _OF_SUBSTEPS = 60.0, 2.0, 0.25
 """The frequency [Hz] of the correction and its damping ratio; at most that share of the rate of substeps."""
-_SETTLED = 1e-10
-"""Share of an impulse by which it may still change where sweeps come to their end."""
 _TRIALS = 64
 """How often a block is solved again in a sweep, as bounds of impulses turn out to act, or not to. With 12, a
 heap of 40 ragdolls with a motor of 1 N m as a brake in each joint still moved at 1 m/s after 14 s: bounds
@@ -343,16 +342,24 @@ def _solve_block(joints: Joints, block: int, motion: Motion, inverse: Inverse, s
             break
         factorise(joints, block, inverse, soft.spring)
         changed += size
-    return changed > _SETTLED * size
+    return changed > SETTLED * size
 
 
 @inlined
-def sweep_joints(joints: Joints, motion: Motion, inverse: Inverse, soft: JointSoftness) -> bool:
-    """Solve all blocks once; return whether impulses still change."""
-    unsettled = False
-    for block in range(len(joints.groups) - 1):
-        loose = _solve_block(joints, block, motion, inverse, soft)
-        unsettled = unsettled or loose
+def sweep_joints(
+    joints: Joints, motion: Motion, inverse: Inverse, soft: JointSoftness, stirred: Stirred
+) -> bool:
+    """Solve the blocks of stirred bodies once; return whether impulses still change, which stirs theirs."""
+    unsettled, nodes, groups = False, joints.nodes, joints.groups
+    for block in range(len(groups) - 1):
+        first, end = nodes[groups[block, B.FIRST], B.ENDS], nodes[groups[block + 1, B.FIRST], B.ENDS]
+        due = False
+        for e in range(first, end):
+            due = due or is_stirred(stirred, joints.body[e])
+        if due and _solve_block(joints, block, motion, inverse, soft):
+            unsettled = True
+            for e in range(first, end):
+                stir(stirred, inverse, joints.body[e])
     return unsettled
 
 

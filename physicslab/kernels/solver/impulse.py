@@ -12,6 +12,7 @@ from physicslab.kernels.constraint.pair import (
     put_velocity,
     velocity_of,
 )
+from physicslab.kernels.constraint.stirred import stirred_in
 from physicslab.kernels.joints.blocks import Joints
 from physicslab.kernels.joints.soft import (
     JointSoftness,
@@ -133,14 +134,16 @@ def solve(
         warm_start_joints(joints, motion, inverse, warm_start_scale, h)
         factorise_joints(joints, inverse, stiff)
     _warm_start(contacts, motion, inverse, warm_start_scale)
-    if near.counts[WIDE_COUNT] > 0:
+    crowd = near.counts[WIDE_COUNT] > 0
+    if crowd:
         warm_start_wide(near, motion, warm_start_scale)
     soft = _soft_constraint(softness, acting, h, sweeps, sunk)
     for n in range(sweeps):
+        stirred = stirred_in(n, near.stirred, crowd)
         if joined:
-            loose = sweep_joints(joints, motion, inverse, stiff)
-        unsettled, _, _ = sweep(contacts, motion, inverse, soft, n % 2 == 1, False)
-        if near.counts[WIDE_COUNT] > 0:
+            loose = sweep_joints(joints, motion, inverse, stiff, stirred)
+        unsettled, _, _ = sweep(contacts, motion, inverse, soft, stirred, False)
+        if crowd:
             sweep_wide(near, motion, 0.0, soft, False)
         elif not (unsettled or loose):
             break
@@ -198,14 +201,15 @@ def relax(
         begin_joints(joints, motion, near.rotations, inverse, acting, 0.0)
         factorise_joints(joints, inverse, stiff)
     for n in range(sweeps):
+        stirred = stirred_in(n, near.stirred, crowd)
         if joined:
             if crowd and n > 0:
                 note_joints(joints, motion)
-            loose = sweep_joints(joints, motion, inverse, stiff)
+            loose = sweep_joints(joints, motion, inverse, stiff, stirred)
             if crowd:
                 book_work(joints, motion, near.account, False)
                 book_momentum(joints, motion, inverse, near.account, False)
-        unsettled, push, rub = sweep(contacts, motion, inverse, rigid, n % 2 == 1, crowd)
+        unsettled, push, rub = sweep(contacts, motion, inverse, rigid, stirred, crowd)
         pressed, friction_work = pressed + push, friction_work + rub
         if crowd:
             push, rub = sweep_wide(near, motion, drift, rigid, True)

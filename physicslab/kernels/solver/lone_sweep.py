@@ -6,6 +6,7 @@ compiled in a twentieth of the time of :func:`physicslab.kernels.solver.soft.adv
 
 from physicslab.kernels import Plain, kernel
 from physicslab.kernels.arguments import Contacts, Inverse, Motion
+from physicslab.kernels.constraint.stirred import Stirred
 from physicslab.kernels.python_fallback import native_for
 from physicslab.kernels.solver.sweep import sweep
 from physicslab.kernels.wide.solve import SoftConstraint
@@ -15,9 +16,14 @@ from physicslab.kernels.wide.solve import SoftConstraint
 @kernel
 def sweep_contacts(
     contacts: Plain[Contacts], motion: Plain[Motion], inverse: Plain[Inverse],
-    soft: Plain[SoftConstraint], backward: bool, booked: bool,
+    soft: Plain[SoftConstraint], stirred: Plain[Stirred], booked: bool,
 ) -> tuple[bool, float, float]:  # fmt: skip
     """Return what :func:`physicslab.kernels.solver.sweep.sweep` does."""
     return sweep(
-        Contacts(*contacts), Motion(*motion), Inverse(*inverse), SoftConstraint(*soft), backward, booked
+        Contacts(*contacts),
+        Motion(*motion),
+        Inverse(*inverse),
+        SoftConstraint(*soft),
+        Stirred(*stirred),
+        booked,
     )

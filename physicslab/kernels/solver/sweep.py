@@ -17,6 +17,7 @@ from physicslab.kernels.constraint.pair import (
     response,
     velocity_of,
 )
+from physicslab.kernels.constraint.stirred import SETTLED, Stirred, is_stirred, stir
 from physicslab.kernels.records import Manifold, Point
 from physicslab.kernels.wide.solve import (
     SoftConstraint,
@@ -27,9 +28,6 @@ from physicslab.kernels.wide.solve import (
     two_normals,
     work_of,
 )
-
-_SETTLED = 1e-10
-"""Share of a normal impulse by which an impulse may still change where sweeps come to their end."""
 
 
 class Done(NamedTuple):
@@ -144,19 +142,23 @@ def _friction(
 
 @always_inlined
 def sweep(
-    contacts: Contacts, motion: Motion, inverse: Inverse, soft: SoftConstraint, backward: bool, booked: bool
+    contacts: Contacts, motion: Motion, inverse: Inverse, soft: SoftConstraint, stirred: Stirred, booked: bool
 ) -> tuple[bool, float, float]:
-    """Solve all scalar contacts once, ``backward`` from the last to the first.
+    """Solve the scalar contacts of stirred bodies once, in every other sweep from the last to the first.
 
     Friction is limited by the newest normal impulse. Returns whether any impulse has changed by more than
-    :data:`_SETTLED`, and where it is ``booked`` the work of normal and of tangential impulses [J].
+    :data:`SETTLED` of the normal one, which stirs its bodies, and where it is ``booked`` the work of normal
+    and of tangential impulses [J].
     """
     linear, angular, unsettled = motion.linear, motion.angular, False
+    backward = stirred.sweep % 2 == 1
     pressed, friction_work = 0.0, 0.0
     for number in range(contacts.number):
         p = contacts.touching[contacts.number - 1 - number if backward else number]
         manifold, one, two = contacts.manifolds[p], contacts.points[2 * p], contacts.points[2 * p + 1]
         a, b = manifold.a, manifold.b
+        if not (is_stirred(stirred, a) or is_stirred(stirred, b)):
+            continue
         mass, v = inverse_mass_of(inverse, a, b), velocity_of(linear, angular, a, b)
         if manifold.count == 1:
             v, done = _one_point(manifold, one, v, mass, soft, booked)
@@ -175,5 +177,8 @@ def sweep(
                     friction_work += done.friction_work
         put_velocity(linear, angular, a, b, v)
         held = one.normal_impulse + (two.normal_impulse if manifold.count == 2 else 0.0)
-        unsettled = unsettled or change > _SETTLED * held
+        if change > SETTLED * held:
+            unsettled = True
+            stir(stirred, inverse, a)
+            stir(stirred, inverse, b)
     return unsettled, pressed, friction_work

@@ -1,0 +1,47 @@
+"""Which bodies the impulses of a sweep have changed: only what touches these is solved in the next one.
+
+So every cluster of bodies comes to its own end, whatever others in the same world do.
+"""
+
+from typing import NamedTuple
+
+from physicslab.kernels import Rows, always_inlined, inlined_by_numba
+from physicslab.kernels.arguments import Inverse
+
+SETTLED = 1e-10
+"""Share of an impulse by which it may still change where it counts as unchanged."""
+
+
+class Stirred(NamedTuple):
+    """The number of a sweep, the first whose changes count, and the last that changed each body (rows,).
+
+    Fixed bodies are never changed, and so connect nothing.
+    """
+
+    sweep: int
+    since: int
+    last: Rows
+
+
+@inlined_by_numba
+def stirred_in(sweep: int, last: Rows, all_count: bool) -> Stirred:
+    """Return what counts in a sweep: changes from the one before on, or whatever was, where ``all_count``.
+
+    Blocks of eight contacts are solved in every sweep, and leave no trace in ``last``.
+    """
+    if sweep == 0 and not all_count:
+        last[:] = -1
+    return Stirred(sweep, -1 if all_count else sweep - 1, last)
+
+
+@always_inlined
+def is_stirred(stirred: Stirred, body: int) -> bool:
+    """Whether impulses have changed a body since it was looked at in the sweep before."""
+    return bool(stirred.last[body] >= stirred.since)
+
+
+@always_inlined
+def stir(stirred: Stirred, inverse: Inverse, body: int) -> None:
+    """Note that impulses change a body in this sweep, if they can."""
+    if inverse.mass[body] > 0.0 or inverse.inertia[body] > 0.0:
+        stirred.last[body] = stirred.sweep
