@@ -51,7 +51,7 @@ class RunRecorder:
     quantities : tuple of Key
         Other quantities of an instant: the momentum of the world, and what graphs show.
     words, joints : lists of dict
-        What these are called, and the joints: as they are at the start, as some may break.
+        Their names and units, and the joints: as they are at the start, since some may break.
     """
 
     def __init__(self, world: World) -> None:
