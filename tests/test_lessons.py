@@ -8,6 +8,7 @@ import math
 import re
 from dataclasses import replace
 from pathlib import Path
+from random import Random
 from types import SimpleNamespace
 
 import pytest
@@ -20,10 +21,10 @@ from physicslab.ecs.quantity_text import Expression, InvalidText, Quantity
 from physicslab.files.scene import load_scene
 from physicslab.languages.catalogue import languages
 from physicslab.lessons.catalogue import LESSONS, LIBRARY, find_lesson
-from physicslab.lessons.check import LessonRuns, check_lesson
+from physicslab.lessons.check import LessonRuns, check_lesson, row_of
 from physicslab.lessons.lesson import Recall
 from physicslab.lessons.reader import read_lesson
-from physicslab.lessons.setup import Case, Parameters
+from physicslab.lessons.setup import AS_IT_IS, Case, Parameters
 from physicslab.lessons.worksheet import worksheet
 from physicslab.world import World
 
@@ -51,6 +52,26 @@ def test_every_theory_holds_where_it_says_and_fails_where_it_says(name: str, tmp
         assert tolerance <= max(_LOOSE * widest, _ROUNDING), f"{compare.name} is loose"
         assert all(row.gap > 2.0 * row.tolerance for row in own if not row.holds)
     assert all(compare.fails for compare in lesson.compares()), "the case where it stops holding"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", LESSONS)
+def test_a_theory_holds_where_it_says_for_all_values_that_learners_may_choose(name: str) -> None:
+    lesson, random = find_lesson(name), Random(name)
+    runs, setup, judged = LessonRuns(lesson), lesson.setup, 0
+    ranges = {one: [setup.quantity(one, end) for end in ends] for one, ends in setup.opened.items()}
+    for compare in lesson.compares():
+        for base in (AS_IT_IS, AS_IT_IS, random.choice(compare.cases)):
+            taken = [one for one in ranges if random.random() < 0.7]
+            own = [(one, repr(random.uniform(*ranges[one]))) for one in taken]
+            try:
+                case = Case(compare.name, (*base.values, *own))
+                row = row_of(lesson, compare, case, runs.figures(compare.run, case))
+            except InvalidText:
+                continue  # too few swings within the run, say: then there is nothing to compare
+            judged += row.holds
+            assert row.passed or not row.holds, (compare.name, case.values, row.gap)
+    assert judged
 
 
 @pytest.mark.parametrize("name", LESSONS)
