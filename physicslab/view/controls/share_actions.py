@@ -12,7 +12,7 @@ from physicslab.ecs.component import Component, InvalidValue
 from physicslab.ecs.text import printable, unique_name
 from physicslab.export.page import field_words
 from physicslab.files.places import SECTIONS, find_place
-from physicslab.files.replace import create_file, reason_of, replace_file
+from physicslab.files.replace import reason_of, replace_file
 from physicslab.files.scene import SceneError, file_stem, save_scene
 from physicslab.stepping.keyframe import Keyframe
 from physicslab.view.controls.saving import name_of
@@ -247,7 +247,7 @@ def finish_sharing(window: Window) -> None:
         return
     page: bytes = report["page"]
     try:
-        (create_file if not sharing.path.exists() else replace_file)(sharing.path, page)
+        replace_file(sharing.path, page)
     except OSError as error:
         sharing.choosing = True
         sharing.naming.refused = f"The page could not be saved: {reason_of(error)}"
