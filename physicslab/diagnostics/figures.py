@@ -19,7 +19,6 @@ from physicslab.components.quantities import QUANTITIES, carrier_of, why_not_of
 from physicslab.diagnostics.quantities import Reading
 from physicslab.ecs.conditions import Comparison, comparison, difference
 from physicslab.ecs.quantity_text import (
-    Dimension,
     Expression,
     InvalidText,
     Quantity,
@@ -126,7 +125,7 @@ class Record:
         for name in self.columns:
             entity, quantity = quantity_of(name, ids)
             self._sources.append((quantity, None if entity is None else ids[entity]))
-        self.dimensions = {name: _dimension(unit_of(name)) for name in self.columns}
+        self.dimensions = {name: Expression(unit_of(name)).value().dimension for name in self.columns}
 
     @property
     def samples(self) -> range:
@@ -378,7 +377,3 @@ _FUNCTIONS: dict[str, tuple[int, int, Callable[..., Quantity]]] = {
 }  # fmt: skip
 """The functions of a run, with how many expressions they take."""
 FUNCTIONS = frozenset(_FUNCTIONS)
-
-
-def _dimension(unit: str) -> Dimension:
-    return Expression(unit).value().dimension if unit != "1" else Quantity(0.0).dimension
