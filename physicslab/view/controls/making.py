@@ -4,7 +4,7 @@ import time
 from pathlib import Path
 
 from physicslab.components import Velocity
-from physicslab.diagnostics.figures import columns, unit_of
+from physicslab.diagnostics.samples import columns, unit_of
 from physicslab.ecs.quantity_text import InvalidText
 from physicslab.ecs.text import printable
 from physicslab.export.page import field_words
