@@ -8,7 +8,7 @@ from keyword import iskeyword
 from physicslab.components.quantities import QUANTITIES, carrier_of, why_not_of
 from physicslab.diagnostics.impact_table import ImpactReader
 from physicslab.diagnostics.quantities import Reading
-from physicslab.ecs.quantity_text import Dimension, Expression, InvalidText, Quantity
+from physicslab.ecs.quantity_text import Expression, InvalidText
 from physicslab.ecs.text import suggestion
 from physicslab.world import World
 
@@ -100,7 +100,7 @@ class Record:
             entity, quantity = quantity_of(name, ids)
             self._sources.append((quantity, None if entity is None else ids[entity]))
         self.breaks: dict[str, list[float]] = {name: [] for name in self.columns}
-        self.dimensions = {name: _dimension(unit_of(name)) for name in self.columns}
+        self.dimensions = {name: Expression(unit_of(name)).value().dimension for name in self.columns}
 
     @property
     def samples(self) -> range:
@@ -141,7 +141,3 @@ class Record:
         for column, (quantity, body) in zip(self.columns.values(), self._sources, strict=True):
             value = self._world.collisions if quantity == "collisions" else reading.value(quantity, body)
             column.append(float(value))
-
-
-def _dimension(unit: str) -> Dimension:
-    return Expression(unit).value().dimension if unit != "1" else Quantity(0.0).dimension
