@@ -16,14 +16,25 @@ from hypothesis.extra import numpy as arrays
 from numpy.typing import NDArray
 
 from physicslab import World, cli, load_scene, save_scene
-from physicslab.components import Drag, Mass, Shape, Spring, Trail, Transform, Velocity
+from physicslab.components import (
+    Drag,
+    Graph,
+    GraphLine,
+    Mass,
+    Rope,
+    Shape,
+    Spring,
+    Trail,
+    Transform,
+    Velocity,
+)  # fmt: skip
 from physicslab.components.colour import rgb_of
 from physicslab.ecs.config import PhysicsConfig
 from physicslab.export.look import style
 from physicslab.export.packing import pack
 from physicslab.export.parts import springs_of
 from physicslab.export.recording import RunRecorder, frame_run
-from physicslab.prefabs import gas
+from physicslab.prefabs import circle, gas
 from physicslab.systems.standard import standard_systems
 from physicslab.theme import contrast
 
@@ -110,6 +121,40 @@ def test_a_page_holds_the_numbers_of_the_run(
     energies = dict(zip(read["energies"], columns[-1, 1:], strict=False))
     assert energies["total"] == np.float32(told["energy"]["final"])
     assert energies["gravity"] == np.float32(told["energy"]["potential_gravity"])
+
+
+def swinging() -> World:
+    """Return a bob on a rope that breaks after 0.394 s, with graphs of both."""
+    world = World()
+    bob = circle(world, (4.0, 4.0), radius=0.1, name="bob")
+    rope = world.spawn(Rope(b=bob, anchor_a=(3.0, 4.0), breaks=20.0), name="rope")
+    graph = world.spawn(Graph())
+    for quantity, body in (("joint force", rope), ("x", bob), ("impulse y: gravity", None)):
+        world.spawn(GraphLine(graph, quantity, body))
+    return world
+
+
+def test_a_joint_that_breaks_is_shown_until_then_and_keeps_its_name(tmp_path: Path) -> None:
+    save_scene(swinging(), tmp_path / "scene.json")
+    read = document(exported(tmp_path / "page.html", str(tmp_path / "scene.json"), "--seconds", "1"))
+    [rope] = read["joints"]
+    assert (rope["kind"], rope["b"]) == ("Rope", 0)
+    assert rope["until"] == pytest.approx(0.394016, abs=1e-6)
+    assert [one["name"] for one in read["quantities"]][3:] == [
+        "rope: joint force",
+        "bob: x",
+        "impulse y: gravity",
+    ]
+    force = unpack(read["data"], read["instants"])[:, 1 + len(read["energies"]) + 3]
+    assert (np.isfinite(force) == (np.arange(61) / 60.0 < rope["until"])).all()
+
+
+def test_the_page_of_a_recorded_run_does_not_make_accounts_up() -> None:
+    read = document(swinging().record(1.0).page())
+    first = 1 + len(read["energies"]) + 3
+    columns = unpack(read["data"], read["instants"])[:, first : first + 3]
+    assert np.isfinite(columns[:, 1]).all(), "where the bob is was recorded"
+    assert np.isnan(columns[:, 2]).all(), "the books of each instant were not"
 
 
 def test_every_spaces_the_instants(tmp_path: Path) -> None:

@@ -89,7 +89,7 @@ def test_redundant_joints_are_found_and_move_nothing_else() -> None:
     bar = world.entity("bar0")
     world.spawn(Pin(a=bar, anchor_a=(0.0, 0.0), anchor_b=(0.25, 0.0)))  # the bar cannot move any more
     world.run(seconds=1.0)
-    assert (world.joints.rank, len(world.joints)) == (3, 4)
+    assert (int(world.joints.dependent.sum()), len(world.joints)) == (1, 4)
     assert tuple(world.component(bar, Transform).position) == pytest.approx((0.25, 0.0), abs=1e-12)
 
 

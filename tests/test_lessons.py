@@ -6,21 +6,25 @@ import html
 import json
 import math
 import re
+from dataclasses import replace
 from pathlib import Path
+from random import Random
 from types import SimpleNamespace
 
 import pytest
 
 from physicslab.cli import main
-from physicslab.diagnostics.figures import Figures, Record
+from physicslab.diagnostics.figures import Figures
+from physicslab.diagnostics.samples import Record
 from physicslab.ecs.conditions import Condition
 from physicslab.ecs.quantity_text import Expression, InvalidText, Quantity
+from physicslab.files.scene import load_scene
 from physicslab.languages.catalogue import languages
 from physicslab.lessons.catalogue import LESSONS, LIBRARY, find_lesson
-from physicslab.lessons.check import LessonRuns, check_lesson
+from physicslab.lessons.check import LessonRuns, check_lesson, row_of
 from physicslab.lessons.lesson import Recall
 from physicslab.lessons.reader import read_lesson
-from physicslab.lessons.setup import Case, Parameters
+from physicslab.lessons.setup import AS_IT_IS, Case, Parameters
 from physicslab.lessons.worksheet import worksheet
 from physicslab.world import World
 
@@ -48,6 +52,26 @@ def test_every_theory_holds_where_it_says_and_fails_where_it_says(name: str, tmp
         assert tolerance <= max(_LOOSE * widest, _ROUNDING), f"{compare.name} is loose"
         assert all(row.gap > 2.0 * row.tolerance for row in own if not row.holds)
     assert all(compare.fails for compare in lesson.compares()), "the case where it stops holding"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", LESSONS)
+def test_a_theory_holds_where_it_says_for_all_values_that_learners_may_choose(name: str) -> None:
+    lesson, random = find_lesson(name), Random(name)
+    runs, setup, judged = LessonRuns(lesson), lesson.setup, 0
+    ranges = {one: [setup.quantity(one, end) for end in ends] for one, ends in setup.opened.items()}
+    for compare in lesson.compares():
+        for base in (AS_IT_IS, AS_IT_IS, random.choice(compare.cases)):
+            taken = [one for one in ranges if random.random() < 0.7]
+            own = [(one, repr(random.uniform(*ranges[one]))) for one in taken]
+            try:
+                case = Case(compare.name, (*base.values, *own))
+                row = row_of(lesson, compare, case, runs.figures(compare.run, case))
+            except InvalidText:
+                continue  # too few swings within the run, say: then there is nothing to compare
+            judged += row.holds
+            assert row.passed or not row.holds, (compare.name, case.values, row.gap)
+    assert judged
 
 
 @pytest.mark.parametrize("name", LESSONS)
@@ -134,7 +158,7 @@ def recorded(x: list[float]) -> Figures:
     [
         ("b.x", 16.0), ("start(b.x)", 1.0), ("greatest(b.x)", 16.0), ("least(b.x)", 0.0), ("time", 5.0),
         ("at(0.5 s, b.x)", 0.25), ("when(b.x > 0.25 m)", 1.5), ("when(b.x < 0.25 m)", 0.5), ("k b.x", 32.0),
-        ("slope(b.x)", 3.0), ("mean(b.x)", 4.5), ("count(b.x > 2 m)", 1.0), ("peak(1, -b.x)", 0.0),
+        ("slope(b.x)", 3.0), ("mean(b.x)", 13 / 3), ("count(b.x > 2 m)", 1.0), ("peak(1, -b.x)", 0.0),
         ("max(b.x, 20 m)", 20.0), ("period(sin(pi*time/(2 s)))", 4.0),
     ],
 )  # fmt: skip
@@ -168,6 +192,41 @@ def test_values_on_both_sides_of_an_impact_lie_on_no_curve_through_it(jump: int,
     level = 0.5 * (flown(jump - 1) + flown(jump))
     crossing = Expression(f"when(b.x > {level} m)").value(figures).value
     assert jump - 1 < crossing < jump
+
+
+H, G, KEPT = 3.75, 9.81, 0.8
+FALL, FAST = math.sqrt(2.0 * H / G), math.sqrt(2.0 * H * G)
+LEFT = 2.0 - FALL
+UP = 4.0 * FALL - G * FALL**3 / 6.0 + 0.25 * LEFT + KEPT * FAST * LEFT**2 / 2.0 - G * LEFT**3 / 6.0
+
+
+@pytest.mark.parametrize("dt", ["1/60", "0.007", "1/25"])
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("least(ball.y)", 0.25), ("least(ball.vy)", -FAST), ("greatest(ball.vy)", KEPT * FAST),
+        ("when(ball.vy > 0)", FALL), ("when(ball.y < 0.26 m)", math.sqrt(2.0 * 3.74 / G)),
+        ("count(ball.y < 0.26 m)", 1.0), ("mean(ball.y)", UP / 2.0), ("peak(1, ball.y)", 0.25 + KEPT**2 * H),
+        ("greatest(world.kinetic)", 0.5 + G * H), ("peak(1, -ball.y)", -0.25),
+    ],
+)  # fmt: skip
+def test_figures_reach_up_to_the_moment_of_an_impact(text: str, value: float, dt: str) -> None:
+    world = load_scene("drop")
+    world.simulation = replace(world.simulation, dt=Expression(dt).value().value)
+    expression, world.contacts.read = Expression(text), True
+    record = Record(world, (name for name in expression.names() if "." in name))
+    record.add()
+    for _ in world.stepping(seconds=2.0):
+        record.add()
+    found = expression.value(Figures(record, Parameters({}))).value
+    assert found == pytest.approx(value, rel=1e-9)
+
+
+def test_figures_reach_up_to_the_end_of_a_run() -> None:
+    figures = recorded([t * t for t in range(9)])
+    figures.record.end = 5.5
+    assert Expression("greatest(b.x)").value(figures).value == pytest.approx(5.5**2, abs=1e-9)
+    assert Expression("mean(b.x)").value(figures).value == pytest.approx(5.5**2 / 3.0, abs=1e-9)
 
 
 @pytest.mark.parametrize("per_period", [10, 20, 40])

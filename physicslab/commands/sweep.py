@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from physicslab.commands import FAILED, CommandError, require, require_window
-from physicslab.commands.opening import check_seconds, name_of, opened
+from physicslab.commands.opening import check_output, check_seconds, name_of, opened
 from physicslab.commands.output import Output
 from physicslab.commands.progress import Progress
 from physicslab.commands.usage import SAMPLE_FORM
@@ -23,7 +23,6 @@ from physicslab.ensembles.space import check_whole
 from physicslab.ensembles.task import Task
 from physicslab.ensembles.workers import MOST_WORKERS, Workers
 from physicslab.files.checks import shown
-from physicslab.scenes import SCENES
 from physicslab.world import World
 
 _MOST_VALUES = 1_000_000
@@ -87,8 +86,7 @@ def _output(arguments: Namespace) -> Output | None:
     output = Output("--out", arguments.out)
     if output.to_stdout:
         raise CommandError("--out -: must be a path, whose ending names the format")
-    if arguments.scene not in SCENES:
-        output.refuse_same(arguments.scene, "the scene")
+    check_output(output, arguments)
     return output
 
 

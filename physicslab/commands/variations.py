@@ -83,7 +83,7 @@ def vary(world: World, text: str, most: int) -> tuple[Place, tuple[float, ...]]:
     values = _values(place, span, most)
     for value in (values[0], values[-1]):
         try:
-            spec.check(place.whole(world, value))
+            spec.check(place.whole(place.read(world), value))
         except InvalidValue as error:
             raise SceneError(f"{place.words} = {shown(span)}: {value!r}: must be {error.allowed}") from error
     return place, values

@@ -19,19 +19,6 @@ _OF_POINT = tuple(name for name in POINT.names or () if name != "bend")
 _WARM = ("feature", "normal_impulse", "tangent_impulse")
 
 
-def copied(contacts: Contacts) -> Contacts:
-    """Return what :func:`kept_rows` needs, in copies that no step changes."""
-    contacts.sync()
-    held = Contacts()
-    held.recorded, held.impulse_dt = contacts.recorded, contacts.impulse_dt
-    held.substep_factor = contacts.substep_factor
-    held.manifolds = contacts.manifolds[: contacts.recorded].copy()
-    held.points = contacts.points[: 2 * contacts.recorded].copy()
-    for own, copy in zip(contacts.wide.kinds, held.wide.kinds, strict=True):
-        copy.colour = own.colour.copy()
-    return held
-
-
 def kept_rows(contacts: Contacts) -> Iterator[list[float] | None]:
     """Yield what the next step takes from the last one, as rows of numbers that JSON can hold.
 

@@ -92,18 +92,11 @@ def contacts_of(state: State, entity: int) -> tuple[Contact, ...]:
 
 def contact_between(state: State, a: int, b: int) -> Contact | None:
     """Return the contact of two entities, as A and B in the order given, or ``None``."""
-    contacts = state.contacts
-    for p in _reported(contacts):
-        manifold = contacts.manifolds[p]
-        pair = int(manifold["entity_a"]), int(manifold["entity_b"])
-        if pair == (a, b):
-            return _describe(state, p)
-        if pair == (b, a):
-            seen = _describe(state, p)
-            # From the other side, normal and tangent are reversed, and so are the impulses on B: the
-            # numbers stay.
-            return replace(seen, a=a, b=b, normal=-seen.normal)
-    return None
+    seen = next((one for one in contacts_of(state, a) if b in (one.a, one.b)), None)
+    if seen is None or seen.a == a:
+        return seen
+    # From the other side, normal and tangent are reversed, and so are the impulses on B: the numbers stay.
+    return replace(seen, a=a, b=b, normal=-seen.normal)
 
 
 _GROWN = 0.1

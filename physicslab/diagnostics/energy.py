@@ -89,6 +89,14 @@ class Accounts:
         """How much more energy there is than at the start [J]: the sum of the accounts of energy."""
         return self.now.energy - self.start.energy
 
+    @property
+    def unknown(self) -> Accounts:
+        """The same balance, of which no cause is known."""
+        nothing = math.nan
+        energy, angular = (dict.fromkeys(given, nothing) for given in (self.energy, self.angular_momentum))
+        momentum = dict.fromkeys(self.momentum, Vector2(nothing, nothing))
+        return replace(self, energy=energy, momentum=momentum, angular_momentum=angular)
+
     @np.errstate(all="ignore")
     def after(self, begin: Accounts) -> Accounts:
         """Return the accounts of what happened after an earlier moment, at which they were ``begin``."""

@@ -1,8 +1,9 @@
-"""Runs as samples, and the figures that expressions read from them.
+"""The figures that expressions read from the samples of a run.
 
 Samples are taken after each step. Between them a quantity is the polynomial through six samples around it
 that lie on one curve, so that a moment is not bound to steps: the error is of the sixth power of a step. An
-impact ends a curve: through it no polynomial leads, and within its step there is a straight line.
+impact ends a curve: what it moves has two values at its moment, those of the curves before and after. Where
+too few samples are between two impacts, there is a straight line through them.
 """
 
 from __future__ import annotations
@@ -11,15 +12,12 @@ import ast
 import bisect
 import itertools
 import math
-import re
 from collections.abc import Callable, Iterable, Sequence
-from keyword import iskeyword
+from typing import NamedTuple
 
-from physicslab.components.quantities import QUANTITIES, carrier_of, why_not_of
-from physicslab.diagnostics.quantities import Reading
+from physicslab.diagnostics.samples import COLLISIONS, Record
 from physicslab.ecs.conditions import Comparison, comparison, difference
 from physicslab.ecs.quantity_text import (
-    Dimension,
     Expression,
     InvalidText,
     Quantity,
@@ -28,8 +26,6 @@ from physicslab.ecs.quantity_text import (
     dotted,
     in_words,
 )
-from physicslab.ecs.text import suggestion
-from physicslab.world import World
 
 AROUND, _FEW = 6, 4
 """Samples that an interpolation goes through, and where no six of them lie on one curve."""
@@ -39,121 +35,22 @@ an impact it is 1 to 3, of an oscillation 0.5 at nine samples a period. Of four 
 the second differences."""
 _ROUNDED = 1e-12
 """Share of the largest value below which differences are rounding."""
-_LISTED = 20
-"""Names of entities that a refusal lists."""
 _HALVINGS = 60
 """How often an interval is halved in which a moment is."""
+_SAME = 1e-9
+"""Share by which values on both sides of an impact differ at most that are treated as the same."""
 _SECOND = Quantity(1.0, (0, 0, 1, 0), True)
-COLLISIONS = "world.collisions"
-"""The number of impacts since the run began."""
-_NAMES = {quantity.column.replace(" ", "_"): name for name, quantity in QUANTITIES.items()}
-"""Quantities as expressions call them: ``vx``, ``kinetic``, ``energy``."""
 
 
-def quoted(text: str, ids: Iterable[str]) -> str:
-    """Return an expression or a condition with quotes around ids of entities that are no plain words.
+class Limit(NamedTuple):
+    """The moment of an impact [s], just before or just after it."""
 
-    >>> quoted("box 2.y < 2 box 10.y", ["box", "box 2", "box 10"])
-    '"box 2".y < 2 "box 10".y'
-    """
-    odd = sorted((one for one in ids if not _is_word(one)), key=len, reverse=True)
-    either = "|".join(map(re.escape, odd))
-    return re.sub(rf'(?<![\w."])({either})(?=\.[^\W\d])', r'"\1"', text) if odd else text
+    time: float
+    after: bool
 
 
-def _is_word(name: str) -> bool:
-    return name.isidentifier() and not iskeyword(name)
-
-
-def quantity_of(name: str, ids: Iterable[str]) -> tuple[str | None, str]:
-    """Return the entity and the quantity that ``ball.x`` stands for; ``None`` for the world.
-
-    Raises
-    ------
-    InvalidText
-        If there is none such; with the names that there are.
-    """
-    known = [*ids, "world"]
-    entity = max((one for one in known if name.startswith(f"{one}.")), key=len, default="")
-    if not entity:
-        words = ", ".join(one if _is_word(one) else f'"{one}"' for one in known[:_LISTED])
-        more = (", ..." if len(known) > _LISTED else "") + suggestion(name.rpartition(".")[0] or name, known)
-        raise InvalidText(f"'{name}' is no quantity: must begin with one of {words}{more}")
-    column = name[len(entity) + 1 :]
-    body = None if entity == "world" else 1
-    if name != COLLISIONS and (column not in _NAMES or why_not_of(_NAMES[column], body) is not None):
-        raise InvalidText(f"'{name}' is no quantity: {entity} has {', '.join(columns(body))}")
-    return (None if body is None else entity), _NAMES.get(column, column)
-
-
-def columns(body: int | None) -> dict[str, str]:
-    """Return the quantities of a body, or of the world for ``None``, by what expressions call them."""
-    return {
-        short: long
-        for short, long in _NAMES.items()
-        if why_not_of(long, body) is None and ":" not in long and carrier_of(long) == "Transform"
-    }
-
-
-def unit_of(name: str) -> str:
-    """Return the SI unit of ``ball.x``."""
-    return "1" if name == COLLISIONS else QUANTITIES[_NAMES[name.rpartition(".")[2]]].unit
-
-
-class Record:
-    """Samples of a run: times [s], and the values of quantities [SI], each as many.
-
-    Parameters
-    ----------
-    world : World
-        The world that is recorded; it may go on between samples.
-    names : iterable of str
-        Quantities of it, as ``ball.x``.
-
-    Attributes
-    ----------
-    end : float
-        When the run ends [s]; samples after that serve to interpolate before it.
-    """
-
-    def __init__(self, world: World, names: Iterable[str]) -> None:
-        ids = {world.label(entity): entity for entity in world.entities()}
-        self._world = world
-        self.end = world.time
-        self.times: list[float] = []
-        self.columns: dict[str, list[float]] = {name: [] for name in names}
-        self._sources = []
-        for name in self.columns:
-            entity, quantity = quantity_of(name, ids)
-            self._sources.append((quantity, None if entity is None else ids[entity]))
-        self.dimensions = {name: _dimension(unit_of(name)) for name in self.columns}
-
-    @property
-    def samples(self) -> range:
-        """Those until the end."""
-        return range(bisect.bisect_right(self.times, self.end))
-
-    def clear(self) -> None:
-        """Forget all samples, for another run of the same world."""
-        self.times.clear()
-        for column in self.columns.values():
-            column.clear()
-
-    def take(self, times: list[float], columns: Iterable[list[float]]) -> None:
-        """Take samples from elsewhere: times [s], and as many values of each column [SI]."""
-        self.end, self.times = times[-1], times
-        self.columns = dict(zip(self.columns, columns, strict=True))
-
-    def add(self) -> None:
-        """Take a sample of the world as it is now."""
-        self.end = self._world.time
-        self.times.append(self.end)
-        if not self._sources:
-            return
-        reading = Reading(self._world)
-        for column, (quantity, body) in zip(self.columns.values(), self._sources, strict=True):
-            value = self._world.collisions if quantity == "collisions" else reading.value(quantity, body)
-            column.append(float(value))
+type Instant = int | float | Limit
+"""A sample by its number, a time [s], or one side of an impact."""
 
 
 class Figures:
@@ -169,24 +66,28 @@ class Figures:
         The samples.
     parameters : Scope, optional
         Values that have names.
-    now : float or int, optional
-        At which time [s], or at which sample, quantities are read; at the end where absent.
+    now : Instant, optional
+        When quantities are read; at the end where absent.
     """
 
-    def __init__(
-        self, record: Record, parameters: Scope | None = None, now: float | int | None = None
-    ) -> None:
+    def __init__(self, record: Record, parameters: Scope | None = None, now: Instant | None = None) -> None:
         self.record, self.parameters = record, parameters
         self.now = record.end if now is None else now
 
     def named(self, name: str) -> Quantity | None:
         """Return the value of a parameter, of a quantity, or the ``time``."""
-        column = self.record.times if name == "time" else self.record.columns.get(name)
-        if column is None:
+        if name == "time":
+            return Quantity(self.time_of(self.now), _SECOND.dimension, True)
+        if name not in self.record.columns:
             return None if self.parameters is None else self.parameters.named(name)
-        dimension = _SECOND.dimension if name == "time" else self.record.dimensions[name]
-        value = column[self.now] if isinstance(self.now, int) else self.between(column, self.now)
-        return Quantity(value, dimension, name != COLLISIONS)
+        value = self.record.columns[name][self.now] if isinstance(self.now, int) else self._between(name)
+        return Quantity(value, self.record.dimensions[name], name != COLLISIONS)
+
+    def time_of(self, instant: Instant) -> float:
+        """Return the time of an instant [s]."""
+        if isinstance(instant, int):
+            return self.record.times[instant]
+        return instant.time if isinstance(instant, Limit) else instant
 
     def called(self, name: str, arguments: list[ast.expr], whole: Expression) -> Quantity | None:
         """Return the value of a function of the run; ``None`` where there is none of that name."""
@@ -198,8 +99,8 @@ class Figures:
             raise InvalidText(f"{name} takes {least}{'' if least == most else f' or {most}'} parts")
         return read(self, *(Expression(whole.text, argument) for argument in arguments))
 
-    def at(self, now: float | int) -> Figures:
-        """Return the figures of the same run at another time [s], or sample."""
+    def at(self, now: Instant) -> Figures:
+        """Return the figures of the same run at another instant."""
         return Figures(self.record, self.parameters, now)
 
     def series(self, expression: Expression) -> list[float]:
@@ -209,32 +110,73 @@ class Figures:
             return self.record.columns[name][: len(self.record.samples)]
         return [expression.value(self.at(sample)).value for sample in self.record.samples]
 
-    def moment(self, margin: Callable[[Figures], float], number: int = 1) -> float:
-        """Return when a margin becomes positive for the ``number``-th time [s]; NaN if it never does."""
-        signs = [margin(self.at(sample)) > 0.0 for sample in range(len(self.record.times))]
-        for sample in range(1, len(signs)):
-            if signs[sample] and not signs[sample - 1]:
+    def instants(self, names: Iterable[str], end: float) -> list[Instant]:
+        """Return what is looked at of a run until an ``end`` [s]: samples, and impacts on what has names."""
+        record = self.record
+        samples = bisect.bisect_right(record.times, end)
+        cuts = {time for name in names for time in record.breaks.get(name, ()) if time <= end}
+        sides = ((time, after, Limit(time, bool(after))) for time in cuts for after in (0, 1))
+        merged: list[tuple[float, int, Instant]] = [
+            *((record.times[sample], 2, sample) for sample in range(samples)), *sides
+        ]  # fmt: skip
+        if cuts:
+            merged.sort(key=lambda one: one[:2])
+        if record.times[samples - 1] < end:
+            merged.append((end, 2, end))
+        return [instant for _, _, instant in merged]
+
+    def course(self, expression: Expression) -> tuple[list[Instant], list[float]]:
+        """Return the instants until the end of the run, and an expression's value at each [SI].
+
+        There is one of an impact through which the value stays.
+        """
+        instants: list[Instant] = []
+        values: list[float] = []
+        for instant in self.instants(expression.names(), self.record.end):
+            value = expression.value(self.at(instant)).value
+            is_same = bool(instants) and self.time_of(instants[-1]) == self.time_of(instant)
+            if not (is_same and math.isclose(values[-1], value, rel_tol=_SAME)):
+                instants.append(instant)
+                values.append(value)
+        return instants, values
+
+    def moment(self, margin: Callable[[Figures], float], names: Iterable[str], number: int = 1) -> float:
+        """Return when a margin of ``names`` becomes positive for the ``number``-th time [s]; NaN if never."""
+        instants = self.instants(names, self.record.times[-1])
+        signs = [margin(self.at(instant)) > 0.0 for instant in instants]
+        for place in range(1, len(signs)):
+            if signs[place] and not signs[place - 1]:
                 number -= 1
                 if not number:
-                    return self._root(margin, sample)
+                    return self.root(margin, *instants[place - 1 : place + 1])
         return math.nan
 
-    def _root(self, margin: Callable[[Figures], float], sample: int) -> float:
-        before, after = self.record.times[sample - 1 : sample + 1]
-        for _ in range(_HALVINGS):
+    def root(self, margin: Callable[[Figures], float], early: Instant, late: Instant) -> float:
+        """Return when a margin becomes positive between two instants [s]."""
+        before, after = self.time_of(early), self.time_of(late)
+        for _ in range(_HALVINGS if before < after else 0):
             middle = 0.5 * (before + after)
             before, after = (before, middle) if margin(self.at(middle)) > 0.0 else (middle, after)
         return 0.5 * (before + after)
 
-    def between(self, column: Sequence[float], time: float) -> float:
-        """Return the value of samples at a time [s], by Lagrange's polynomial through those around it."""
-        times = self.record.times[: len(column)]
+    def _between(self, name: str) -> float:
+        """Return a quantity now, by Lagrange's polynomial through the samples around on one curve."""
+        times, column, now = self.record.times, self.record.columns[name], self.now
+        time, after = self.time_of(now), not isinstance(now, Limit) or now.after
         place = bisect.bisect_left(times, time)
-        if place < len(times) and times[place] == time:
+        if after and place < len(times) and times[place] == time:
             return column[place]
         if not (times and times[0] <= time <= times[-1]):
             raise Undefined(f"the run has no time {time:.6g} s")
-        return self._through(self._curve(column, place), column, time)
+        return self._through(self._curve(column, place, self._piece(name, time, after)), column, time)
+
+    def _piece(self, name: str, time: float, after: bool) -> range:
+        """Return the samples between the impacts before and behind a time [s]; all if these are too few."""
+        times, breaks = self.record.times, self.record.breaks.get(name, [])
+        k = (bisect.bisect_right if after else bisect.bisect_left)(breaks, time)
+        first = bisect.bisect_left(times, breaks[k - 1]) if k else 0
+        stop = bisect.bisect_left(times, breaks[k]) if k < len(breaks) else len(times)
+        return range(first, stop) if stop - first > 1 else range(len(times))
 
     def _through(self, nodes: Sequence[int], column: Sequence[float], time: float) -> float:
         """Return the value at a time [s] of Lagrange's polynomial through some samples."""
@@ -247,18 +189,23 @@ class Figures:
             total += weight * column[i]
         return total
 
-    def _curve(self, column: Sequence[float], place: int) -> range:
-        """Return the samples on one curve with that at a place and the one before, the nearest if possible.
+    def _curve(self, column: Sequence[float], place: int, piece: range) -> range:
+        """Return the samples of a piece on one curve with that at a place and the one before, or the nearest.
 
-        They are these two where an impact is between them.
+        They are the two nearest where there is no such curve.
         """
+        left, right = max(place - 1, piece.start), min(place, piece.stop - 1)
         for count in (AROUND, _FEW):
+            starts = range(max(right - count + 1, piece.start), min(left, piece.stop - count) + 1)
             middle = place - count // 2
-            for first in sorted(range(place - count + 1, place), key=lambda first: abs(first - middle)):
+            for first in sorted(starts, key=lambda first: abs(first - middle)):
                 nodes = range(first, first + count)
-                if first >= 0 and nodes.stop <= len(column) and self._is_one_curve(column, nodes):
+                if self._is_one_curve(column, nodes):
                     return nodes
-        return range(len(column)) if len(column) < _FEW else range(place - 1, place + 1)
+        if len(piece) < _FEW:
+            return piece
+        first = min(max(place - 1, piece.start), piece.stop - 2)
+        return range(first, first + 2)
 
     def _is_one_curve(self, column: Sequence[float], nodes: range) -> bool:
         """Whether neighbouring samples lie on one smooth curve, as far as their differences tell."""
@@ -275,20 +222,20 @@ class Figures:
         bends = max(abs(value) for order in orders[1:3] for value in order)
         return max(map(abs, orders[3])) <= max(_ROUGH * bends, rounding)
 
-    def extreme(self, series: Sequence[float], sample: int, sign: float) -> float:
-        """Return the extreme value of samples near one of them, ``sign`` 1 for the greatest, -1 the least.
+    def extreme(self, expression: Expression, near: Sequence[Instant], sign: float) -> float:
+        """Return the greatest value on the curves between instants, the least for a ``sign`` of -1."""
 
-        It is that of the curves before and after the sample; at an impact, or at an end, often the sample.
-        """
-        best = sign * series[sample]
-        for place in range(max(sample, 1), min(sample + 2, len(series))):
-            nodes = self._curve(series, place)
-            low, high = self.record.times[place - 1 : place + 1]
-            for _ in range(_HALVINGS):
+        def value(instant: Instant) -> float:
+            return sign * expression.value(self.at(instant)).value
+
+        best = max(map(value, near))
+        for early, late in itertools.pairwise(near):
+            low, high = self.time_of(early), self.time_of(late)
+            for _ in range(_HALVINGS if low < high else 0):
                 third = (high - low) / 3.0
-                left, right = (self._through(nodes, series, time) for time in (low + third, high - third))
-                low, high = (low + third, high) if sign * left < sign * right else (low, high - third)
-            best = max(best, sign * self._through(nodes, series, 0.5 * (low + high)))
+                left, right = low + third, high - third
+                low, high = (left, high) if value(left) < value(right) else (low, right)
+            best = max(best, value(0.5 * (low + high)) if low < high else best)
         return sign * best
 
 
@@ -302,9 +249,9 @@ def _start(of: Figures, expression: Expression) -> Quantity:
 
 
 def _greatest(of: Figures, expression: Expression, sign: float = 1.0) -> Quantity:
-    series = of.series(expression)
-    sample = max(range(len(series)), key=lambda i: sign * series[i])
-    return _like(of, expression, of.extreme(series, sample, sign))
+    instants, values = of.course(expression)
+    place = max(range(len(values)), key=lambda i: sign * values[i])
+    return _like(of, expression, of.extreme(expression, instants[max(place - 1, 0) : place + 2], sign))
 
 
 def _least(of: Figures, expression: Expression) -> Quantity:
@@ -312,10 +259,14 @@ def _least(of: Figures, expression: Expression) -> Quantity:
 
 
 def _mean(of: Figures, expression: Expression) -> Quantity:
-    times, series = of.record.times, of.series(expression)
-    span = times[len(series) - 1] - times[0]
-    areas = (0.5 * (series[i] + series[i + 1]) * (times[i + 1] - times[i]) for i in range(len(series) - 1))
-    return _like(of, expression, sum(areas) / span)
+    """Return the mean over time, by Simpson's rule on the curves between samples."""
+    instants, values = of.course(expression)
+    times, area = [of.time_of(instant) for instant in instants], 0.0
+    for i, (early, late) in enumerate(itertools.pairwise(times)):
+        if early < late:
+            middle = expression.value(of.at(0.5 * (early + late))).value
+            area += (late - early) / 6.0 * (values[i] + 4.0 * middle + values[i + 1])
+    return _like(of, expression, area / (times[-1] - times[0]))
 
 
 def _slope(of: Figures, expression: Expression) -> Quantity:
@@ -338,7 +289,7 @@ def _at(of: Figures, time: Expression, expression: Expression) -> Quantity:
 
 def _when(of: Figures, condition: Expression, number: Expression | None = None) -> Quantity:
     compared, n = comparison(condition), 1 if number is None else round(number.value(of).value)
-    time = of.moment(lambda figures: difference(compared, figures), n)
+    time = of.moment(lambda figures: difference(compared, figures), condition.names(), n)
     if math.isnan(time):
         raise Undefined(f"'{condition.text}': that does not happen {n} times within the run")
     return Quantity(time, _SECOND.dimension, True)
@@ -346,28 +297,33 @@ def _when(of: Figures, condition: Expression, number: Expression | None = None) 
 
 def _count(of: Figures, condition: Expression) -> Quantity:
     compared: Comparison = comparison(condition)
-    signs = [difference(compared, of.at(i)) > 0.0 for i in of.record.samples]
+    instants = of.instants(condition.names(), of.record.end)
+    signs = [difference(compared, of.at(instant)) > 0.0 for instant in instants]
     return Quantity(float(sum(now and not before for before, now in itertools.pairwise(signs))))
 
 
 def _peak(of: Figures, number: Expression, expression: Expression) -> Quantity:
-    series, n = of.series(expression), round(number.value(of).value)
-    peaks = [i for i in range(1, len(series) - 1) if series[i - 1] < series[i] >= series[i + 1]]
+    (instants, values), n = of.course(expression), round(number.value(of).value)
+    peaks = [i for i in range(1, len(values) - 1) if values[i - 1] < values[i] >= values[i + 1]]
     if not 1 <= n <= len(peaks):
         raise Undefined(f"'{expression.text}': the run has {len(peaks)} peaks, not {n}")
-    return _like(of, expression, of.extreme(series, peaks[n - 1], 1.0))
+    peak = peaks[n - 1]
+    return _like(of, expression, of.extreme(expression, instants[peak - 1 : peak + 2], 1.0))
 
 
 def _period(of: Figures, expression: Expression) -> Quantity:
     """Return the mean time from one crossing of zero upwards to the next."""
-    series = of.series(expression)
-    ups = [i for i in range(1, len(series)) if series[i - 1] <= 0.0 < series[i]]
+    instants, values = of.course(expression)
+    ups = [i for i in range(1, len(values)) if values[i - 1] <= 0.0 < values[i]]
     if len(ups) < 2:
         raise Undefined(
             f"'{expression.text}': it crosses zero upwards fewer than twice within the run; of a motion "
             "about another place the mean is to be taken away: period(ball.x - mean(ball.x))"
         )
-    first, last = (of._root(lambda figures: expression.value(figures).value, i) for i in (ups[0], ups[-1]))
+    first, last = (
+        of.root(lambda figures: expression.value(figures).value, *instants[up - 1 : up + 1])
+        for up in (ups[0], ups[-1])
+    )
     return Quantity((last - first) / (len(ups) - 1), _SECOND.dimension, True)
 
 
@@ -378,7 +334,3 @@ _FUNCTIONS: dict[str, tuple[int, int, Callable[..., Quantity]]] = {
 }  # fmt: skip
 """The functions of a run, with how many expressions they take."""
 FUNCTIONS = frozenset(_FUNCTIONS)
-
-
-def _dimension(unit: str) -> Dimension:
-    return Expression(unit).value().dimension if unit != "1" else Quantity(0.0).dimension

@@ -10,7 +10,6 @@ J . (u- + u+) / 2, with u before and after all impulses of the moment: this is e
 in the impulses. The sum over the points of a pair, negative, is what the impact took.
 """
 
-import io
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, TextIO
@@ -297,37 +296,30 @@ class ImpactTableWriter:
     def write(self) -> None:
         """Write the impacts since the last call."""
         for records in self._reader.read():
-            self.write_rows(records)
-
-    def write_rows(self, records: NDArray[Any]) -> None:
-        """Write some impacts, an array of IMPACT (n,)."""
-        found, (a, b) = read_impacts(records), names_of(self._state, records)
-        columns = (
-            records["time"].tolist(), a, b,
-            *(records[name].tolist() for name in ("x", "y", "normal_x", "normal_y")),
-            found.vn_before.tolist(), found.vn_after.tolist(),
-            found.vt_before.tolist(), found.vt_after.tolist(),
-            records["normal_impulse"].tolist(), records["tangent_impulse"].tolist(),
-            np.where(found.sticks, "sticks", "slips").tolist(),
-            records["restitution"].tolist(), _or_empty(found.e_found), found.energy_lost.tolist(),
-            _or_empty(since_last(records, self._last)), [LAWS[law] for law in records["law"].tolist()],
-            records["points"].tolist(), np.where(records["alone"] == 1, "no", "yes").tolist(),
-        )  # fmt: skip
-        self._rows.write(zip(*columns, strict=True))
-        self.rows += len(records)
+            self._rows.write(_rows(self._state, records, self._last))
+            self.rows += len(records)
 
 
-def impact_table_csv(state: State, records: NDArray[Any]) -> str:
-    """Return impacts as CSV, a row each in their order, with the columns of :class:`ImpactTableWriter`.
+def impact_rows(state: State, records: NDArray[Any]) -> Iterator[tuple[object, ...]]:
+    """Yield the rows of :class:`ImpactTableWriter`, its head first, for impacts, an array of IMPACT (n,)."""
+    yield _HEADER
+    yield from _rows(state, records, {})
 
-    Parameters
-    ----------
-    records : array of IMPACT (n,)
-        The impacts, of the world of ``state``.
-    """
-    text = io.StringIO()
-    ImpactTableWriter(text, state).write_rows(records)
-    return text.getvalue()
+
+def _rows(state: State, records: NDArray[Any], last: LastTimes) -> Iterator[tuple[object, ...]]:
+    found, (a, b) = read_impacts(records), names_of(state, records)
+    columns = (
+        records["time"].tolist(), a, b,
+        *(records[name].tolist() for name in ("x", "y", "normal_x", "normal_y")),
+        found.vn_before.tolist(), found.vn_after.tolist(),
+        found.vt_before.tolist(), found.vt_after.tolist(),
+        records["normal_impulse"].tolist(), records["tangent_impulse"].tolist(),
+        np.where(found.sticks, "sticks", "slips").tolist(),
+        records["restitution"].tolist(), _or_empty(found.e_found), found.energy_lost.tolist(),
+        _or_empty(since_last(records, last)), [LAWS[law] for law in records["law"].tolist()],
+        records["points"].tolist(), np.where(records["alone"] == 1, "no", "yes").tolist(),
+    )  # fmt: skip
+    return zip(*columns, strict=True)
 
 
 def _or_empty(values: Floats) -> list[float | str]:

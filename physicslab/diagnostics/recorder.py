@@ -16,9 +16,10 @@ from numpy.typing import NDArray
 
 from physicslab.components import Transform, Velocity
 from physicslab.diagnostics.energy import Booked, measure_energy, read_books
-from physicslab.diagnostics.figures import Figures, Record, quoted
+from physicslab.diagnostics.figures import Figures
 from physicslab.diagnostics.impact_table import NO_IMPACTS, ImpactReader, impact_table
 from physicslab.diagnostics.run_report import body_names
+from physicslab.diagnostics.samples import Record, quoted
 from physicslab.ecs.conditions import Condition
 from physicslab.ecs.fields import Field, InvalidValue
 from physicslab.ecs.quantity_text import InvalidText

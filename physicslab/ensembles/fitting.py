@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from physicslab.diagnostics.figures import Record
 from physicslab.diagnostics.fits import covariance_of
 from physicslab.diagnostics.recorder import record
+from physicslab.diagnostics.samples import Record
 from physicslab.ecs.component import InvalidValue
 from physicslab.ecs.quantity_text import InvalidText
 from physicslab.ensembles.runs import check_condition

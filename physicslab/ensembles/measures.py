@@ -20,8 +20,9 @@ from numpy.typing import NDArray
 
 from physicslab.components import Transform, Velocity
 from physicslab.components.quantities import ENERGY_CAUSES
-from physicslab.diagnostics.figures import COLLISIONS, FUNCTIONS, Figures, Record, quantity_of, quoted
+from physicslab.diagnostics.figures import FUNCTIONS, Figures
 from physicslab.diagnostics.impact_table import first_and_last, read_impacts
+from physicslab.diagnostics.samples import COLLISIONS, Record, quantity_of, quoted
 from physicslab.ecs.quantity_text import (
     Expression,
     InvalidText,
@@ -194,7 +195,7 @@ class Measures:
         self._on_path = path
         self._since, named = 0, (name for one in self._expressions.values() for name in one.names())
         self.of_impacts = any(name.startswith(_WHICH) for name in named)
-        world.contacts.read |= self.of_impacts
+        world.contacts.read |= self.of_impacts or self.needs_path
         self.units = {name: self._tried(name) for name in self._names}
         self._record, self._ends = Record(world, self._path), Record(world, self._end)
 

@@ -96,8 +96,7 @@ def sensitivity(
     places = {path: find_place(world, "fields", path, "", names) for path in fields}
     middle = {}
     for path, place in places.items():
-        held = place.read(world)
-        held = getattr(held, place.part) if place.part else held
+        held = place.value(world)
         if place.spec.kind not in ("number", "vector") or not isinstance(held, int | float):
             raise SceneError(f"{place.words}: must be a number: derivatives are by numbers")
         middle[path] = float(held)

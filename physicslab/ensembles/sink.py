@@ -71,8 +71,6 @@ class Sink:
         Whether the file held all results of this task already.
     found : int
         How many rows were there already.
-    strange : int
-        How many parts held rows of another scene, other measures or another version.
     """
 
     def __init__(self, task: Task, out: Path | None) -> None:
@@ -81,7 +79,7 @@ class Sink:
         self._rows = len(task.space)
         self.is_whole = self._holds_all()
         self._open: dict[int, Part] = {}
-        self.found = self.strange = 0
+        self.found = 0
 
     @property
     def parts(self) -> int:
@@ -193,7 +191,6 @@ class Sink:
         count = min(len(keys), len(own))
         same = np.zeros(len(own), np.bool_)
         same[:count] = (keys[:count] == own[:count]).all(axis=1) & kept["done"][:count]
-        self.strange += bool(kept["done"].any()) and not same.any()
         if same.any() and kept["values"].shape[1:] == part.values.shape[1:]:
             part.done = same
             part.values[same], part.wall_s[same] = (

@@ -223,7 +223,7 @@ def _checked(world: World, place: Place, value: Any) -> Any:
     elif isinstance(value, np.generic):
         value = value.item()
     try:
-        place.spec.check(place.whole(world, value))
+        place.spec.check(place.whole(place.read(world), value))
     except InvalidValue as error:
         raise SceneError(f"{place.words} = {shown(value)}: must be {error.allowed}") from error
     return value
@@ -256,9 +256,7 @@ def _with_jitter(
         deviation = number_of(place, size)
         own = by_path.get(place.path)
         if own is None:
-            held = place.read(world)
-            own = _axis(world, place, path.strip(), getattr(held, place.part) if place.part else held)
-            own = replace(own, law="fixed")
+            own = replace(_axis(world, place, path.strip(), place.value(world)), law="fixed")
         if own.kind not in ("number", "vector") or deviation < 0.0:
             raise SceneError(f"{place.words} = {shown(size)}: a jitter must be a number >= 0, of a number")
         by_path[place.path] = replace(own, jitter=deviation)

@@ -248,11 +248,8 @@ class Runner:
                 if handle is None:
                     place.write(world, value)
                     continue
-                whole = value
-                if place.part:
-                    held = getattr(handle, place.spec.name)
-                    whole = (value, held.y) if place.part == "x" else (held.x, value)
-                setattr(handle, place.spec.name, whole)
+                held = getattr(handle, place.spec.name) if place.part else None
+                setattr(handle, place.spec.name, place.whole(held, value))
             except InvalidValue as error:
                 raise SceneError(f"{place.words} = {shown(value)}: must be {error.allowed}") from error
         with world.active():

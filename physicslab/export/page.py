@@ -16,6 +16,7 @@ from physicslab.export.packing import pack
 from physicslab.export.recording import RunRecorder, extent_of_run
 from physicslab.languages.catalogue import SOURCE
 from physicslab.languages.language import language
+from physicslab.systems.breaking import breaks_of
 from physicslab.world import World
 
 _SCRIPTS = ("run.js", "bodies.js", "picture.js", "figures.js", "controls.js", "lesson.js")
@@ -127,18 +128,24 @@ def run_document(
     physics = world.physics
     uniform = physics.gravity_mode == "linear" and "gravity" in recorder.energies
     index = {key: number for number, key in enumerate(recorder.quantities)}
+    broke = {(one.entity, one.kind): one.time for one in breaks_of(world.schedule.systems, world.time)}
     return {
         "start": recorder.start,
         "instants": recorder.count,
         "energies": recorder.energies,
-        "quantities": [parts.quantity_words(world, key) for key in recorder.quantities],
+        "quantities": recorder.words,
         "graphs": [
             {"across": None if across is None else index[across], "lines": [index[line] for line in lines]}
             for across, lines in recorder.graphs
         ],
         "bodies": recorder.bodies(world),
         "springs": parts.springs_of(world),
-        "joints": parts.joints_of(world),
+        "joints": [
+            one | {"until": broke[one["entity"], one["kind"]] - recorder.start}
+            if (one["entity"], one["kind"]) in broke
+            else one
+            for one in recorder.joints
+        ],
         "fields": parts.fields_of(world),
         "thrusts": parts.thrusts_of(world),
         "texts": parts.notes_of(world),
@@ -153,11 +160,11 @@ def run_document(
 
 
 def page_of(instants: Iterable[World], name: str) -> bytes:
-    """Return the page that plays a world at one instant after another, in UTF-8."""
+    """Return the page that plays a world at one instant after another, in UTF-8; it has no accounts then."""
     recorder: RunRecorder | None = None
     for world in instants:
         recorder = recorder or RunRecorder(world)
-        recorder.write(world, measure_account(world))
+        recorder.write(world, measure_account(world).unknown)
     assert recorder is not None
     return page(world, name, [run_document(world, recorder, [])])
 

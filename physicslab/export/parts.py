@@ -34,7 +34,7 @@ def springs_of(world: World) -> list[dict[str, Any]]:
 
 
 def joints_of(world: World) -> list[dict[str, Any]]:
-    """Return every joint: its kind, its ends by place among the bodies (none is the world), its anchors."""
+    """Return every joint: kind, entity, ends by place among the bodies (none is the world), anchors."""
     place, entities = places(world), world.entity_index.entities
     found: list[dict[str, Any]] = []
     for joint in world.joints.joints:
@@ -43,7 +43,7 @@ def joints_of(world: World) -> list[dict[str, Any]]:
             name: place[int(entities[row])] if row else None for name, row in (("a", joint.a), ("b", joint.b))
         }
         anchors = {name: getattr(world.joints, name)[n].tolist() for name in ("anchor_a", "anchor_b")}
-        one: dict[str, Any] = {"kind": joint.kind.__name__} | ends | anchors
+        one: dict[str, Any] = {"kind": joint.kind.__name__, "entity": joint.entity} | ends | anchors
         if joint.kind in (components.Rod, components.Rope, components.Pulley, components.Slot):
             part = world.component(joint.entity, joint.kind)
             if isinstance(part, components.Rope):

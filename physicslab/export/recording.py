@@ -13,7 +13,7 @@ from physicslab.diagnostics.energy import Accounts
 from physicslab.diagnostics.quantities import Reading
 from physicslab.diagnostics.run_report import body_names
 from physicslab.export.look import edges_of
-from physicslab.export.parts import Key, graphs_of, springs_of
+from physicslab.export.parts import Key, graphs_of, joints_of, quantity_words, springs_of
 from physicslab.state.shapes import cores_of
 from physicslab.world import World
 
@@ -50,6 +50,8 @@ class RunRecorder:
         The horizontal axis of each graph, and its lines.
     quantities : tuple of Key
         Other quantities of an instant: the momentum of the world, and what graphs show.
+    words, joints : lists of dict
+        Their names and units, and the joints: as they are at the start, since some may break.
     """
 
     def __init__(self, world: World) -> None:
@@ -63,6 +65,8 @@ class RunRecorder:
         self.graphs = graphs_of(world)
         plotted = [key for across, lines in self.graphs for key in (*((across,) if across else ()), *lines)]
         self.quantities: tuple[Key, ...] = tuple(dict.fromkeys([*_MOMENTA, *plotted]))
+        self.words = [quantity_words(world, key) for key in self.quantities]
+        self.joints = joints_of(world)
         self._instants: list[Columns] = []
 
     def write(self, world: World, account: Accounts) -> None:

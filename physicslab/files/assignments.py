@@ -62,10 +62,8 @@ def put(world: World, values: Mapping[Place, Any]) -> None:
     for place, value in values.items():
         _, fields = given.setdefault((place.name, place.kind), (place, {}))
         whole = fields[place.spec.name][1] if place.spec.name in fields else place.read(world)
-        if place.part:
-            x, y = whole
-            value = (value, y) if place.part == "x" else (x, value)
-        fields[place.spec.name] = str(value), value
+        whole = place.whole(whole, value)
+        fields[place.spec.name] = str(whole), whole
     for (name, kind), (place, fields) in given.items():
         _replace(world, name, place.entity, kind, fields, place.option)
     check_scene(write_scene(world), next(iter(values)).option if values else "")

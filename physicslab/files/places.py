@@ -66,12 +66,17 @@ class Place:
         """Return the whole field's value, as components and laws have it."""
         return getattr(self._owner(world), self.spec.name)
 
-    def whole(self, world: World, value: Any) -> Any:
-        """Return the value of the whole field where ``value`` is that of the part."""
+    def value(self, world: World) -> Any:
+        """Return the value of the field, or of its part."""
+        held = self.read(world)
+        return getattr(held, self.part) if self.part else held
+
+    def whole(self, held: Any, value: Any) -> Any:
+        """Return the value of a whole field that is ``held`` where ``value`` is that of the part."""
         if not self.part:
             return value
-        held = self.read(world)
-        return (value, held.y) if self.part == "x" else (held.x, value)
+        x, y = held
+        return (value, y) if self.part == "x" else (x, value)
 
     def write(self, world: World, value: Any) -> None:
         """Give the field, or its part, a value.
@@ -81,7 +86,7 @@ class Place:
         InvalidValue
             If it cannot be that.
         """
-        whole = self.whole(world, value)
+        whole = self.whole(self.read(world), value)
         if self.kind in SECTIONS.values():
             setattr(world, self.name, replace(self._owner(world), **{self.spec.name: whole}))
         else:
@@ -94,10 +99,10 @@ class Place:
         return world.component(self.entity, kind)
 
 
-def entity_names(world: World) -> dict[str, int]:
-    """Return every entity by its id, or by what it is and its number."""
+def entity_names(world: World, most: int | None = None) -> dict[str, int]:
+    """Return every entity, or the first few, by its id, or by what it is and its number."""
     names: dict[str, int] = {}
-    for entity in world.entities():
+    for entity in world.entities()[:most]:
         names[unique_name(world.label(entity), names)] = entity
     return names
 

@@ -12,7 +12,8 @@ from physicslab.components import Name, Shape
 from physicslab.components.naming import plain_name
 from physicslab.components.vertices import plain
 from physicslab.contacts.islands import export_rests
-from physicslab.contacts.memory import copied, kept_rows
+from physicslab.contacts.kept import KeptContacts
+from physicslab.contacts.memory import kept_rows
 from physicslab.ecs.component import COMPONENTS, Component
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig, field_names
 from physicslab.ecs.entity_index import EntityIndex
@@ -25,7 +26,6 @@ from physicslab.files.json_text import json_pieces
 from physicslab.files.numbers import export_numbers
 from physicslab.files.reader import FORMAT
 from physicslab.files.remainders import export_remainders
-from physicslab.state.contacts import Contacts
 from physicslab.state.contents import SCENE_TEXTS
 from physicslab.state.joint_rows import kinds_of
 from physicslab.state.state import State
@@ -84,9 +84,8 @@ class WorldSnapshot:
         self.view, self.desk = world.view, world.desk
         self.shaped = set(world.batch(Shape).entities.tolist())
         members = world.islands.members
-        self.contacts: Contacts = (
-            world.islands.contacts(world, rescaled=False).as_contacts() if members else copied(world.contacts)
-        )
+        kept = world.islands.contacts(world, rescaled=False) if members else KeptContacts.of(world.contacts)
+        self.contacts = kept.as_contacts()
         self.joints = list(world.joints.kept())
         parts: list[State] = [island.state for island in members] or [world]
         self.rests = [rest for part in parts for rest in export_rests(part)]

@@ -1,8 +1,7 @@
-"""Texts for people: whole sentences with named gaps, numbers and dates, in one language."""
+"""Texts for people: whole sentences with named gaps, and numbers, in one language."""
 
 import re
 import sys
-from datetime import date
 from functools import cache, lru_cache
 from gettext import NullTranslations
 
@@ -140,19 +139,6 @@ class Language:
         measured = _MEASURED.fullmatch(text)
         said = [self.reword(part) for part in measured.groups()] if measured else []
         return " ".join(said) if measured and said[0] != measured[1] else ""
-
-    def date(self, day: date) -> str:
-        """Return a day with the month by its name.
-
-        >>> language("de").date(date(2026, 3, 1)), language("en").date(date(2026, 3, 1))
-        ('1. März 2026', '1 March 2026')
-        """
-        months = (
-            self.say("January"), self.say("February"), self.say("March"), self.say("April"), self.say("May"),
-            self.say("June"), self.say("July"), self.say("August"), self.say("September"),
-            self.say("October"), self.say("November"), self.say("December"),
-        )  # fmt: skip
-        return self.say("{day} {month} {year}", day=day.day, month=months[day.month - 1], year=day.year)
 
 
 class _MacTexts(NullTranslations):

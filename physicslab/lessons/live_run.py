@@ -2,7 +2,8 @@
 
 from collections.abc import Callable, Iterable
 
-from physicslab.diagnostics.figures import AROUND, Figures, Record
+from physicslab.diagnostics.figures import AROUND, Figures
+from physicslab.diagnostics.samples import Record
 from physicslab.files.checks import SceneError
 from physicslab.lessons.lesson import Run
 from physicslab.lessons.setup import AS_IT_IS, Case, Setup
@@ -32,7 +33,7 @@ class LiveRun:
     def __init__(self, setup: Setup, run: Run, names: Iterable[str], case: Case = AS_IT_IS) -> None:
         self.case = Case(case.text, (*run.case.values, *case.values), case.note)
         self.world, self._parameters = setup.world(self.case), setup.values(self.case)
-        self.record = Record(self.world, names)
+        self.record, self.world.contacts.read = Record(self.world, names), True
         self.record.add()
         self._until, self._after = run.until, 0
         self.limit = (run.seconds or run.limit).value(self._parameters).value
@@ -61,7 +62,7 @@ class LiveRun:
             if self.world.time > self.limit:
                 raise SceneError(f"the run did not come to '{self._until.text}' within {self.limit:g} s")
             return False
-        self.record.end = self.figures.moment(self._until.margin)
+        self.record.end = self.figures.moment(self._until.margin, self._until.names())
         return True
 
 

@@ -15,7 +15,8 @@ from typing import Any
 
 import numpy as np
 
-from physicslab.diagnostics.figures import Figures, quantity_of
+from physicslab.diagnostics.figures import Figures
+from physicslab.diagnostics.samples import quantity_of
 from physicslab.ecs.quantity_text import Expression, InvalidText, dotted, factor_of
 from physicslab.export.packing import pack
 from physicslab.export.page import fill_page, run_document

@@ -5,7 +5,8 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
 
-from physicslab.diagnostics.figures import FUNCTIONS, quantity_of, quoted
+from physicslab.diagnostics.figures import FUNCTIONS
+from physicslab.diagnostics.samples import quantity_of, quoted
 from physicslab.ecs.conditions import Condition
 from physicslab.ecs.quantity_text import Expression, InvalidText, factor_of, in_unit
 from physicslab.lessons.blocks import Block, Entry

@@ -240,11 +240,6 @@ class Joints:
         )
         return solved
 
-    @property
-    def rank(self) -> int:
-        """How many of these are independent."""
-        return int(self.solved.sum() - self.dependent.sum())
-
     def why_not_smooth(self) -> str | None:
         """Return which joint has other rows, or ``None``."""
         left = (joint.kind.__name__ for joint in self.joints if not self.solved[joint.own].all())

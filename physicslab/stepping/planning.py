@@ -141,15 +141,13 @@ def _mover(state: State, schedule: Schedule) -> StepPlan:
     choice = default_plan(simulation)
     method = choice.integrator
     if obstacle is not None:
-        if method.substep and any(force.gyration(state) is not None for force in schedule.forces):
-            stages, own = LEAPFROG_WITH_SPLIT_FORCES, method
+        if not method.substep:
+            reason = sentence("forces_alone", method=method.name, obstacle=obstacle)
+            choice = StepPlan(LEAPFROG, reason, simulation.substeps, smooth=False, refused=reason)
+        if any(force.gyration(state) is not None for force in schedule.forces):
+            stages, own = LEAPFROG_WITH_SPLIT_FORCES, choice.integrator
             return replace(choice, obstacle=obstacle, stages=stages, split_forces=own, split_steps=1)
-        if method.substep:
-            return replace(choice, obstacle=obstacle)
-        reason = sentence("forces_alone", method=method.name, obstacle=obstacle)
-        return StepPlan(
-            LEAPFROG, reason, simulation.substeps, smooth=False, refused=reason, obstacle=obstacle
-        )
+        return replace(choice, obstacle=obstacle)
     if method is EXACT:
         try:
             closed_form(state, schedule.smooth_forces)

@@ -129,7 +129,7 @@ function sample(line) {
 
 function showFigures(frame) {
   const digits = playing ? 4 : 7;
-  const value = (amount, unit) => `${number(amount, digits)} ${raised(unit)}`;
+  const value = (amount, unit) => isNaN(amount) ? "\u2013" : `${number(amount, digits)} ${raised(unit)}`;
   fill($("legend"), lines.map(line => [say(line.name), value(line.values[frame], "J"), line]));
   fill($("momenta"), quantities.slice(0, 3).map(one => [say(one.name), value(one.values[frame], one.unit)]));
   for (const { table, shown } of charts.slice(1)) {

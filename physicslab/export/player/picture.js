@@ -347,7 +347,7 @@ function drawWorld(frame, share) {
     for (const body of bodies) drawBody(body, now(body));
   }
   for (const spring of run.springs) drawSpring(spring, now);
-  for (const joint of run.joints) (drawJoint[joint.kind] ?? drawJoint.Rod)(joint, now);
+  for (const joint of run.joints) if (!(time >= joint.until)) (drawJoint[joint.kind] ?? drawJoint.Rod)(joint, now);
   if (show.arrows) for (const body of movers) drawArrow(now(body));
   if (selected) {
     outline(selected, now(selected), 4);

@@ -243,7 +243,7 @@ def run_events(
         The mode of each row.
     face, apart, due : int64 arrays (pairs,), float64 array (pairs, 5)
         Room.
-    motion, sizes, materials, inverse, bounds : tuples of arrays
+    motion, shapes, materials, inverse, bounds : tuples of arrays
         As :mod:`physicslab.kernels.arguments` has them.
     account : float64 array (CAUSES, 4)
         To which the work and the momentum of impacts and gravity are added.

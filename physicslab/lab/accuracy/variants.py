@@ -31,29 +31,18 @@ type Document = dict[str, Any]
 _PAST = ("contacts", "rests", "solver")
 """The keys of a scene that hold the steps before it; a mirrored or permuted one begins without."""
 _MIRRORED: dict[str, tuple[str, ...]] = {
-    "Transform": ("position", "angle"),
-    "Velocity": ("linear", "angular"),
-    "Mass": (),
-    "Shape": ("vertices",),
-    "Material": (),
-    "Spring": ("anchor_a", "anchor_b"),
-    "Thrust": ("force", "torque", "at"),
-    "Charge": (),
-    "Molecule": (),
-    "Medium": ("flow",),
-    "Drag": (),
-    "Trail": (),
-    "Colour": (),
-    "Layer": (),
-    "MadeOf": (),
-} | {
-    kind.__name__: tuple(
-        spec.name for spec in kind.FIELDS if spec.kind == "vector" or spec.unit in ("rad", "rad/s")
+    name: tuple(
+        spec.name
+        for spec in COMPONENTS[name].FIELDS
+        if spec.kind in ("vector", "points") or spec.unit in ("rad", "rad/s")
     )
-    for kind in KINDS
-    if kind is not Gear
-}
-"""Fields that a mirror changes; a scene with another component is not mirrored."""
+    for name in (
+        "Transform", "Velocity", "Mass", "Shape", "Material", "Spring", "Charge", "Molecule", "Medium",
+        "Drag", "Trail", "Colour", "Layer", "MadeOf", *(kind.__name__ for kind in KINDS if kind is not Gear),
+    )
+} | {"Thrust": ("force", "torque", "at")}  # fmt: skip
+"""Fields that a mirror changes; a scene with another component is not mirrored. The phase of a Thrust is no
+angle in the plane."""
 _RIGID_BUDGET_S = 10.0
 """Rigid contacts of many bodies, and of bodies that chatter, can take seconds a step."""
 GOLDEN = 0.5 * (1.0 + math.sqrt(5.0))

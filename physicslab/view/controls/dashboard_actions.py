@@ -1,9 +1,8 @@
 """Actions on graphs, meters and sliders: each is an edit, so that it is saved and undone."""
 
-import csv
-import io
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from functools import partial
 
 import numpy as np
 
@@ -16,9 +15,8 @@ from physicslab.ecs.text import table_cell
 from physicslab.ecs.vector import Vector2
 from physicslab.history import AddComponent, Command, Group, Remove, SetField, SetPhysics, Spawn
 from physicslab.languages.sentence import Sentence
-from physicslab.view.controls import actions
+from physicslab.view.controls import actions, saving
 from physicslab.view.controls.picking import body_at
-from physicslab.view.controls.saving import save_new
 from physicslab.view.window.dashboard import Dashboard, GraphShown, SliderShown
 from physicslab.view.window.listening import tone
 from physicslab.view.window.placing import refused_change
@@ -222,12 +220,12 @@ def go_to(world: World, window: Window, time: float) -> None:
 
 def save_table(world: World, window: Window, graph: GraphShown) -> None:
     """Write a graph to a new file where the program was started, as a table."""
-    save_new(world, window, "graph", ".csv", table_of(graph, window.dashboard).encode("utf-8"))
+    saving.save_table(world, window, "graph", partial(_rows, graph, window.dashboard))
 
 
 def save_picture(world: World, window: Window, graph: GraphShown, content: bytes) -> None:
     """Write a picture of a graph to a new file where the program was started."""
-    save_new(world, window, "graph", ".png", content)
+    saving.save_new(world, window, "graph", ".png", content)
 
 
 def _labels(world: World, bodies: Sequence[int]) -> str:
@@ -236,20 +234,17 @@ def _labels(world: World, bodies: Sequence[int]) -> str:
     return world.label(bodies[0]) if len(bodies) == 1 else Sentence("{n} bodies", n=len(bodies))
 
 
-def table_of(graph: GraphShown, dashboard: Dashboard) -> str:
-    """Return what a graph shows as CSV: the time, then a column for each quantity, in full figures.
+def _rows(graph: GraphShown, dashboard: Dashboard) -> Iterator[tuple[object, ...]]:
+    """Yield the rows of what a graph shows: the time, then a column for each quantity, in full figures.
 
     Moments at which nothing of it was measured are left out.
     """
     record, keys = dashboard.record, list(dict.fromkeys(graph.keys))
     columns = np.array([record.values(key) for key in keys]).reshape(len(keys), len(record))
-    text = io.StringIO()
-    rows = csv.writer(text, lineterminator="\n")
-    rows.writerow(["time [s]", *(_heading(key, dashboard) for key in keys)])
+    yield "time [s]", *(_heading(key, dashboard) for key in keys)
     for n in np.flatnonzero(~np.isnan(columns).all(axis=0)).tolist():
-        values = ("" if np.isnan(value) else repr(float(value)) for value in columns[:, n])
-        rows.writerow([repr(float(record.times[n])), *values])
-    return text.getvalue()
+        values = ("" if np.isnan(value) else value for value in columns[:, n].tolist())
+        yield float(record.times[n]), *values
 
 
 def _heading(key: Key, dashboard: Dashboard) -> str:

@@ -4,13 +4,13 @@ import time
 from pathlib import Path
 
 from physicslab.components import Velocity
-from physicslab.diagnostics.figures import columns, unit_of
+from physicslab.diagnostics.samples import columns, unit_of
 from physicslab.ecs.quantity_text import InvalidText
 from physicslab.ecs.text import printable
 from physicslab.export.page import field_words
 from physicslab.files.checks import SceneError
 from physicslab.files.places import find_place
-from physicslab.files.replace import create_file, reason_of, replace_file
+from physicslab.files.replace import reason_of, replace_file
 from physicslab.files.scene import file_stem
 from physicslab.languages.language import language
 from physicslab.languages.sentence import Sentence
@@ -119,7 +119,7 @@ def make_lesson(world: World, window: Window, over: Path | None = None) -> None:
         with gone_back(window, making.begins):
             text = lesson_text(name_bodies(world), making.draft)
         told = _tried(parse_lesson(text, printable(path.name), path))
-        (create_file if not path.exists() else replace_file)(path, text.encode())
+        replace_file(path, text.encode())
     except LessonError as error:
         making.refused[error.entry] = error.why or str(error)
         return

@@ -1,9 +1,11 @@
 """A new scene, and what saves the one that is shown: to its file, under a name, as a copy."""
 
+import io
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
+from physicslab.diagnostics.table_rows import TableRows
 from physicslab.ecs.text import printable
 from physicslab.files.listing import is_scene
 from physicslab.files.replace import create_file, reason_of, replace_file
@@ -150,6 +152,10 @@ def save_new(world: World, window: Window, what: str, ending: str, content: byte
         return
 
 
-def save_table(world: World, window: Window, what: str, table: Callable[[], str]) -> None:
+def save_table(
+    world: World, window: Window, what: str, rows: Callable[[], Iterable[Iterable[object]]]
+) -> None:
     """Write a table that belongs to a scene to a new file where the program was started."""
-    save_new(world, window, what, ".csv", table().encode("utf-8"))
+    text = io.StringIO()
+    TableRows(text).write(rows())
+    save_new(world, window, what, ".csv", text.getvalue().encode("utf-8"))

@@ -9,10 +9,10 @@ from pathlib import Path
 from physicslab.components import Held, MadeOf, Shape, Slider, Velocity
 from physicslab.components.slider import GRAVITY
 from physicslab.ecs.component import Component, InvalidValue
-from physicslab.ecs.text import printable, unique_name
+from physicslab.ecs.text import printable
 from physicslab.export.page import field_words
-from physicslab.files.places import SECTIONS, find_place
-from physicslab.files.replace import create_file, reason_of, replace_file
+from physicslab.files.places import SECTIONS, entity_names, find_place
+from physicslab.files.replace import reason_of, replace_file
 from physicslab.files.scene import SceneError, file_stem, save_scene
 from physicslab.stepping.keyframe import Keyframe
 from physicslab.view.controls.saving import name_of
@@ -67,10 +67,7 @@ def _take_sliders(world: World, window: Window) -> None:
 
 def _names(world: World) -> dict[int | None, str]:
     """Return what the command line calls each entity."""
-    names: dict[str, int] = {}
-    for entity in world.entities()[:_MOST]:
-        names[unique_name(world.label(entity), names)] = entity
-    return {entity: name for name, entity in names.items()}
+    return {entity: name for name, entity in entity_names(world, _MOST).items()}
 
 
 def varying(world: World) -> dict[str, str]:
@@ -123,10 +120,9 @@ def span_around(world: World, window: Window, begins: str, path: str) -> tuple[f
     """Return half and one and a half of a field's first value, as far as it may be so, and its unit."""
     place = find_place(world, "", path, "")
     with gone_back(window, begins):
-        value = place.read(world)
-    now, spec = getattr(value, place.part) if place.part else value, place.spec
+        now = place.value(world)
     low, high = sorted((0.5 * now, 1.5 * now)) if now else (0.0, 5.0)
-    return max(low, spec.lowest), min(high, spec.highest), spec.unit
+    return max(low, place.spec.lowest), min(high, place.spec.highest), place.spec.unit
 
 
 def begin_sharing(world: World, window: Window, over: Path | None = None) -> None:
@@ -247,7 +243,7 @@ def finish_sharing(window: Window) -> None:
         return
     page: bytes = report["page"]
     try:
-        (create_file if not sharing.path.exists() else replace_file)(sharing.path, page)
+        replace_file(sharing.path, page)
     except OSError as error:
         sharing.choosing = True
         sharing.naming.refused = f"The page could not be saved: {reason_of(error)}"

@@ -25,8 +25,6 @@ def draw_scale_bar(on: Drawing, right: int, bottom: int) -> Rect:
         Where the corner is [px from the left].
     bottom : int
         Where it ends [px from the top].
-    size : int
-        Height of the text [px].
     """
     length = grid_spacing(on.camera.scale)
     bar = length * on.camera.scale
@@ -119,8 +117,6 @@ def draw_edge_arrows(world: World, on: Drawing, room: Rect, taken: Sequence[Rect
         Where the world can be seen: no panel lies over it [px].
     taken : sequence of Rect
         Rectangles that the arrows keep clear of [px].
-    size : int
-        Height of the text [px].
     """
     places = _out_of_sight(world, on.camera, room)
     half = 0.5 * np.array(room[2:])

@@ -47,12 +47,7 @@ class Instrument:
 
 def instrument_of(world: World, entity: int) -> Instrument | None:
     """Return the instrument that an entity is, or ``None``."""
-    for kind in INSTRUMENTS:
-        if world.has(entity, kind):
-            return Instrument(
-                entity, kind, {name: place_of(world, entity, kind, name) for name in kind.POINTS}
-            )
-    return None
+    return next((one for one in instruments_of(world) if one.entity == entity), None)
 
 
 def instruments_of(world: World, overrides: Overrides | None = None) -> Iterator[Instrument]:

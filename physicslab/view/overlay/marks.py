@@ -9,7 +9,7 @@ from physicslab.components import Shape, Transform
 from physicslab.components.shape import CHAIN, CIRCLE
 from physicslab.contacts.outlines import Outlines
 from physicslab.diagnostics.period import spring_state
-from physicslab.ecs.vector import Vector2
+from physicslab.ecs.vector import Vector2, rotated
 from physicslab.theme import Colour
 from physicslab.view.canvas.camera import Drawing
 from physicslab.view.canvas.canvas import Canvas, Numbers, Points, Rect, TextStyle, draw_spots
@@ -94,11 +94,10 @@ _THROW, _LEAST_THROW = 0.2, 0.2
 
 def draw_grip(place: Vector2, target: Vector2, thrown: Vector2, on: Drawing) -> None:
     """Draw a ring where the hand is [m], a band to what it holds, and how fast it would throw that [m/s]."""
-    turns = np.linspace(0.0, 2.0 * math.pi, _CORNERS // 2, endpoint=False)
     start, end = (on.camera.project(np.array([tuple(spot)])) for spot in (place, target))
     if not (np.abs(np.concatenate((start, end))) < _FAR).all():
         return
-    ring = end + _HAND * np.stack((np.cos(turns), np.sin(turns)), axis=1)
+    (ring,) = _rings(end, np.array([_HAND]), _CORNERS // 2)
     on.canvas.lines(ring, np.roll(ring, -1, axis=0), on.theme.accent, 1.5, 0.8)
     if float(np.hypot(*(end - start)[0])) > _LEAST_BAND:
         on.canvas.lines(start, end, on.theme.accent, 2.5, 0.55)
@@ -126,14 +125,7 @@ def _outline(world: World, entity: int, scale: float) -> Points:
         core, radius = np.array([tuple(corner) for corner in shape.core]), shape.rounding
         is_chain = world.table(Shape)["kind"][world.entity_index.rows_of(np.array([entity]))[0]] == CHAIN
     corners = core if is_chain else rim_of(core, radius + _GAP / scale, _CORNERS)
-    return _placed(corners, transform.angle, np.array((transform.position.x, transform.position.y)))
-
-
-def _placed(corners: Points, angle: float, place: Numbers) -> Points:
-    """Return corners (n, 2), turned by an angle [rad] and moved to a place (2,)."""
-    c, s = math.cos(angle), math.sin(angle)
-    placed: Points = corners @ np.array(((c, s), (-s, c))) + place
-    return placed
+    return rotated(corners, transform.angle) + tuple(transform.position)
 
 
 _GHOST_CORNERS = 40

@@ -6,7 +6,7 @@ import numpy as np
 import pygame
 from numpy.typing import NDArray
 
-from physicslab.theme import DARK, Theme
+from physicslab.theme import DARK
 from physicslab.view.canvas.camera import Camera, Drawing, Extent
 from physicslab.view.canvas.canvas import Rect
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
@@ -30,17 +30,15 @@ class MovingPicture:
         Width and height [px].
     extent : Extent
         The part of the world to be seen [m].
-    theme : Theme
-        The colours.
     """
 
-    def __init__(self, size: tuple[int, int], extent: Extent, theme: Theme = DARK) -> None:
+    def __init__(self, size: tuple[int, int], extent: Extent) -> None:
         self._surface = pygame.Surface(size, 0, 32)
         self._labels = Labels()
         camera = Camera(size, scale=100.0)
         camera.look_at(extent, camera.fitting_scale(extent, (0, 0, *size), _AROUND))
         # The few colours of a film are for bodies: its sky has one.
-        plain = replace(theme, grain=0, sky_top=theme.background, sky_bottom=theme.background)
+        plain = replace(DARK, grain=0, sky_top=DARK.background, sky_bottom=DARK.background)
         self._drawing = Drawing(PygameCanvas(self._surface), camera, plain, _TEXT)
 
     def pixels(self, world: World) -> NDArray[np.uint8]:

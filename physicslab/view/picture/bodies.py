@@ -12,6 +12,7 @@ from physicslab.components.made_of import look_of
 from physicslab.components.shape import BOX, CHAIN, CIRCLE
 from physicslab.contacts.outlines import Outlines, outlines_of
 from physicslab.ecs.text import text_of
+from physicslab.ecs.vector import rotated
 from physicslab.state.shapes import line_of
 from physicslab.theme import GLOW, GLOWS, LEAST_PLANET, MAX_SHADOWS, PLANET, POINT_RADIUS, STAR, Theme
 from physicslab.view.canvas.camera import Camera
@@ -233,8 +234,7 @@ def _draw_boxes(
 def _draw_chain(world: World, row: int, camera: Camera, theme: Theme, canvas: Canvas) -> None:
     """Draw the line of a chain, arcs where it is round, with a shade on the side that is solid."""
     transform, line = world.table(Transform), line_of(int(world.table(Shape)["vertices"][row]))
-    c, s = np.cos(transform["angle"][row]), np.sin(transform["angle"][row])
-    corners = camera.project(transform["position"][row] + line @ np.array(((c, s), (-s, c))))
+    corners = camera.project(transform["position"][row] + rotated(line, transform["angle"][row]))
     start, end = corners[:-1], corners[1:]
     along = (end - start) / np.maximum(np.hypot(*(end - start).T), 1e-9)[:, None]
     aside = _SHADE * np.stack((along[:, 1], -along[:, 0]), axis=1)  # to the left, where y points down

@@ -16,7 +16,7 @@ from physicslab.ecs.component import Component
 from physicslab.ecs.config import WindowConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.history import AddComponent, Command, RemoveComponent, SetField
-from physicslab.view.window.placing import free_way, outlines_of
+from physicslab.view.window.placing import free_way, outlines_of, way_within
 from physicslab.world import World
 
 _ALONG, _MAX_BEHIND = 0.3, 24
@@ -43,28 +43,6 @@ type Numbers = NDArray[np.float64]
 class _Sample:
     time: float
     place: Vector2
-
-
-def _within(world: World, entity: int, gap: Vector2) -> Vector2:
-    """Return the part of a way [m] that does not lead a body beyond the walls of the world."""
-    bounds = world.physics.bounds
-    if bounds is None:
-        return gap
-    transform, reach = world.component(entity, Transform), _reach(world, entity)
-    xmin, ymin, xmax, ymax = bounds
-    place = transform.position + gap
-    x = min(max(place.x, xmin + reach.x), max(xmax - reach.x, xmin + reach.x))
-    y = min(max(place.y, ymin + reach.y), max(ymax - reach.y, ymin + reach.y))
-    return Vector2(x, y) - transform.position
-
-
-def _reach(world: World, entity: int) -> Vector2:
-    """Return half of the width and height that a body takes up along the axes of the world [m]."""
-    if not world.has(entity, Shape):
-        return Vector2()
-    shape, angle = world.component(entity, Shape), world.component(entity, Transform).angle
-    corners, radius = [corner.rotated(angle) for corner in shape.core], shape.rounding
-    return Vector2(max(abs(one.x) for one in corners) + radius, max(abs(one.y) for one in corners) + radius)
 
 
 def _yielding(world: World, entity: int, wanted: Vector2, coming: float) -> Vector2:
@@ -273,7 +251,7 @@ class Hand:
         gap = self._path[-1].place - transform.position - grip
         if coming > 0.0:
             gap = _yielding(world, self.entity, gap / coming, coming) * coming
-        gap = free_way(world, self.entity, _within(world, self.entity, gap))
+        gap = free_way(world, self.entity, way_within(world, self.entity, gap))
         self._set(world, self.entity, Velocity, "angular", 0.0)
         if coming > 0.0:
             self._set(world, self.entity, Velocity, "linear", gap / coming)

@@ -324,11 +324,9 @@ class Microscope:
 
         ``logged`` is how many impacts there had been.
         """
-        contacts = world.contacts
-        if self.waits_for is None or contacts.logged <= logged:
+        if self.waits_for is None:
             return False
-        log = contacts.log
-        new = log[np.arange(max(logged, contacts.logged - len(log)), contacts.logged) % len(log)]
+        new = world.contacts.impacts_since(logged)
         fits = new["time"] >= before - _LATE * (world.time - before)
         if self.waits_for:
             fits &= np.isin(new["entity_a"], self.waits_for) | np.isin(new["entity_b"], self.waits_for)

@@ -7,7 +7,7 @@ import subprocess
 import tempfile
 import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
@@ -267,15 +267,12 @@ class ErrorStudy(LabProcess):
         """Whether one rounding grows to another future, or to as much as the smallest error."""
         return self.rounding_shows or self.horizon is not None
 
-    def csv(self) -> str:
-        """Return all runs as a table."""
-        rows = [
-            f"{s.asked},{s.integrator},{s.step},{s.substeps},{s.tolerance!r},{s.cpu_ms!r},{s.error!r},"
-            f"{'at most' if s.at_most else ''}"
-            for s in self.samples
-        ]
-        head = "chosen,method,step,substeps,tolerance,time [ms],error [m],is"
-        return "\n".join([head, *rows]) + "\n"
+    def rows(self) -> Iterator[tuple[object, ...]]:
+        """Yield all runs as rows of a table with a head."""
+        yield "chosen", "method", "step", "substeps", "tolerance", "time [ms]", "error [m]", "is"
+        for s in self.samples:
+            limit = "at most" if s.at_most else ""
+            yield s.asked, s.integrator, s.step, s.substeps, s.tolerance, s.cpu_ms, s.error, limit
 
     def _read(self, report: dict[str, Any]) -> None:
         (found,) = report["scenes"]

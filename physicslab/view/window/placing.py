@@ -68,6 +68,11 @@ def way_aside(world: World, camera: Camera, wanted: Outlines) -> Vector2:
     return gone if gone.magnitude <= most else Vector2()
 
 
+def way_within(world: World, entity: int, way: Vector2) -> Vector2:
+    """Return the part of a way [m] that does not lead a body beyond the walls of the world."""
+    return way + _way_inside(world, outlines_of(world, _row_of(world, entity)).moved(way))
+
+
 def _way_inside(world: World, shapes: Outlines) -> Vector2:
     """Return the way [m] from beyond the walls of the world to within them."""
     bounds = world.physics.bounds

@@ -217,10 +217,10 @@ class Window:
         Whether the notice is of something that could not be done.
     """
 
-    def __init__(self, canvas: Canvas, config: WindowConfig | None = None, theme: Theme = DARK) -> None:
+    def __init__(self, canvas: Canvas, config: WindowConfig | None = None) -> None:
         self.canvas = canvas
         self.config = config or WindowConfig()
-        self.theme = theme
+        self.theme: Theme = DARK
         self.camera = Camera(canvas.size, scale=self.config.pixels_per_metre)
         self.framing = Framing(canvas, self.camera, self.config.pixels_per_metre)
         self.pace = Pace(self.config.max_dt)

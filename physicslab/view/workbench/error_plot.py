@@ -83,7 +83,7 @@ def _build_buttons(ui: Ui, study: ErrorStudy) -> None:
         study.shown = False
     imgui.same_line()
     save, tip = saving.save_table, "Write the table to a file"
-    ui.button("CSV of all runs", tip, save, "errors", study.csv, shown="CSV")
+    ui.button("CSV of all runs", tip, save, "errors", study.rows, shown="CSV")
 
 
 def _build_words(ui: Ui, study: ErrorStudy, wide: float) -> None:

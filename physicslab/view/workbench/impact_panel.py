@@ -6,7 +6,7 @@ from typing import Any
 
 from imgui_bundle import ImVec2, imgui
 
-from physicslab.diagnostics.impact_table import impact_table_csv
+from physicslab.diagnostics.impact_table import impact_rows
 from physicslab.view.canvas.quantities import quantity, without_rounding
 from physicslab.view.controls import impact_actions
 from physicslab.view.controls.saving import save_table
@@ -77,7 +77,7 @@ def _build_head(ui: Ui, world: World, window: Window) -> None:
     tip = "Run until the next impact of the selection, or of any body, and pause there (Shift+Z)"
     ui.button("Pause at the next", tip, impact_actions.pause_at_next, on=waits)
     ui.same_line_if_room("CSV")
-    table, tip = partial(impact_table_csv, world, window.impacts.records), "Write all of them to a file"
+    table, tip = partial(impact_rows, world, window.impacts.records), "Write all of them to a file"
     ui.button("CSV of impacts", tip, save_table, "impacts", table, shown="CSV", enabled=count > 0)
     words = ui.language.say_count("{n} impact", "{n} impacts", count)
     ui.same_line_if_room(words)

@@ -1,9 +1,7 @@
 """Panels of instruments: the stopwatch of gates, and the field in which a note is written."""
 
-import csv
-import io
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import partial
 
 from imgui_bundle import ImVec2, imgui
@@ -52,7 +50,7 @@ def build_stopwatch(ui: Ui, world: World, window: Window) -> None:
         across = imgui.get_content_region_avail().x if imgui.is_window_docked() else width
         columns = _COLUMNS if across > _width(_COLUMNS) * ui.size else _COLUMNS[_NARROW:]
         _build_table(ui, world, every[-(_ROWS if columns is _COLUMNS else _FEWER_ROWS) :], columns)
-        table, tip = partial(crossings_csv, world), "Write all of them to a file"
+        table, tip = partial(crossing_rows, world), "Write all of them to a file"
         ui.button("CSV of crossings", tip, save_table, "crossings", table, shown="CSV", enabled=bool(every))
 
 
@@ -119,19 +117,15 @@ def arrow_of(world: World, gate: int, direction: int) -> str:
     return _ARROWS[round(angle / (0.25 * math.pi)) % 8]
 
 
-def crossings_csv(world: World) -> str:
-    """Return all crossings that are kept as a table, the first one first."""
+def crossing_rows(world: World) -> Iterator[tuple[object, ...]]:
+    """Yield all crossings that are kept as rows of a table with a head, the first one first."""
     system = world.schedule.find(GateSystem)
     every = laps(system.crossings, len(world.batch(Gate))) if system is not None else []
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(["time [s]", "gate", "body", "direction", "speed [m/s]", "since [s]"])
+    yield "time [s]", "gate", "body", "direction", "speed [m/s]", "since [s]"
     for lap in every:
-        one, seconds = lap.crossing, lap.seconds
-        since = "" if seconds is None else repr(seconds)
+        one, since = lap.crossing, "" if lap.seconds is None else lap.seconds
         names = table_cell(world.label(one.gate)), table_cell(world.label(one.body))
-        writer.writerow([repr(one.time), *names, one.direction, repr(one.speed), since])
-    return text.getvalue()
+        yield one.time, *names, one.direction, one.speed, since
 
 
 # ---- notes -------------------------------------------------------------------------------------------------

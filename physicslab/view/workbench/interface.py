@@ -90,11 +90,6 @@ class Layout:
         self.room: Rect = (left, top, max(across, 1), middle)
 
     @property
-    def panels(self) -> tuple[Rect, ...]:
-        """All that is not left for the world [px]."""
-        return self.menu, self.palette, self.transport, self.side
-
-    @property
     def visible(self) -> Rect:
         """The part of the world's room that the panel at the right does not lie over [px]."""
         left, top, width, height = self.room

@@ -7,7 +7,7 @@ import numpy as np
 from imgui_bundle import ImVec2, imgui, implot
 from numpy.typing import NDArray
 
-from physicslab.diagnostics.figures import quantity_of
+from physicslab.diagnostics.samples import quantity_of
 from physicslab.ecs.quantity_text import Expression, InvalidText, dotted, evaluate, factor_of
 from physicslab.languages.sentence import Sentence, proper
 from physicslab.lessons.check import Row, si_unit
