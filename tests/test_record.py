@@ -12,7 +12,17 @@ import numpy as np
 import pytest
 from desk import bits
 
-from physicslab import InvalidValue, PhysicsConfig, Run, SimulationConfig, World, box, circle, load_scene
+from physicslab import (
+    InvalidValue,
+    PhysicsConfig,
+    Run,
+    SimulationConfig,
+    World,
+    box,
+    circle,
+    ensemble,
+    load_scene,
+)  # fmt: skip
 from physicslab.components import Drag, Mass, Name, Rod, Spring, Transform, Velocity
 from physicslab.diagnostics.energy import measure_energy
 from physicslab.scenes import SCENES
@@ -324,6 +334,21 @@ def test_a_run_is_saved_with_every_bit(run: Run, tmp_path: Path) -> None:
     assert all(np.array_equal(*pair) for pair in zip(columns, run.table.values(), strict=True))
     with pytest.raises(ValueError, match=r"must end with one of \.npz, \.csv, \.parquet"):
         run.save(tmp_path / "run.xlsx")
+
+
+def test_headings_are_no_formulas(tmp_path: Path) -> None:
+    world = World()
+    circle(world, (0.0, 1.0), name="=1+1")
+    world.record(0.1).save(tmp_path / "run.csv")
+    assert (tmp_path / "run.csv").read_text("utf-8").startswith("time [s],'=1+1.x [m],")
+    out = tmp_path / "sweep.csv"
+    for _ in range(2):  # the second time it is read
+        found = ensemble(
+            thrown(), {"ball.Mass.mass": [1.0]}, measure={"=1+1": "ball.x"}, seconds=0.1, executor="serial",
+            out=out,
+        )  # fmt: skip
+        assert found.columns["=1+1"].tolist() == pytest.approx([0.7])
+    assert out.read_text("utf-8").startswith("ball.Mass.mass,'=1+1,")
 
 
 def test_tables_of_other_libraries_have_the_units(run: Run, tmp_path: Path) -> None:
