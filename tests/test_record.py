@@ -88,6 +88,20 @@ def held(tolerance: float) -> tuple[World, Counted]:
     return world, spring
 
 
+@pytest.mark.parametrize("rate", [3.0, 80.0, 200.0, 500.0])
+@pytest.mark.parametrize("every", [None, 0.1])
+def test_instants_of_steps_that_are_divided_are_those_that_are_due(rate: float, every: float | None) -> None:
+    laws = PhysicsConfig(gravity_mode="none")
+    world = World(physics=laws, simulation=SimulationConfig(dt=1.0 / 30.0))
+    bob = world.spawn(Transform((1.0, 0.0)), Velocity((0.0, rate)), Mass(1.0), Name("bob"))
+    world.spawn(Rod(b=bob))
+    run = world.record(0.3, every=every)
+    stride = 1 if every is None else 3
+    assert run.times == pytest.approx(np.arange(9 // stride + 1) * stride / 30.0, abs=1e-15)
+    assert run.columns["bob.x"] == pytest.approx(np.cos(rate * run.times), abs=1e-9)
+    assert run.columns["bob.vy"] == pytest.approx(rate * run.columns["bob.x"], abs=1e-9 * rate)
+
+
 @pytest.mark.parametrize("tolerance", [1e-5, 1e-8, 1e-11, 1e-14])
 def test_instants_within_the_steps_of_a_method_are_as_good_as_these(tolerance: float) -> None:
     world, _ = held(tolerance)
