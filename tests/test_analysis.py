@@ -139,6 +139,18 @@ def test_a_fit_finds_the_fields_of_which_data_come_and_how_sure_they_are(tmp_pat
     rows = "\n".join(f"{t},{x}" for t, x in zip(times, places, strict=True))
     path.write_text(f"time,ball.x\n{rows}\n", encoding="utf-8")
     assert fit(oscillator(), start, path).values == exact.values
+    path.write_text(f"time [s],ball.x [m]\n{rows}\n", encoding="utf-8")
+    assert fit(oscillator(), start, path).values == exact.values
+    path.write_text(f"time [s],ball.x [cm]\n{rows}\n", encoding="utf-8")
+    with pytest.raises(SceneError, match=r'column "ball\.x \[cm\]": must be in m$'):
+        fit(oscillator(), start, path)
+
+
+@pytest.mark.peers
+def test_a_fit_reads_what_a_recorded_run_has_saved(tmp_path: Path) -> None:
+    path = tmp_path / "run.csv"
+    oscillator().record(2.0, every=0.1).save(path)
+    assert fit(oscillator(), {STIFFNESS: 7.0}, path).values[STIFFNESS] == pytest.approx(8.0, rel=1e-9)
 
 
 @pytest.mark.peers

@@ -53,6 +53,16 @@ def complaint(capsys: pytest.CaptureFixture[str], *arguments: str, status: int =
     return err.removeprefix("physicslab: ").rstrip("\n")
 
 
+def test_the_summary_of_a_scene_that_has_a_past_says_from_when_to_when(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    world = load_scene("drop")
+    world.run(seconds=1.25)
+    save_scene(world, tmp_path / "later.json")
+    assert cli.main(["run", str(tmp_path / "later.json"), "--seconds", "0.5"]) == 0
+    assert "  time        1.25 s to 1.75 s in 30 steps of 0.0166667 s" in capsys.readouterr().out
+
+
 def test_run_writes_the_document_of_the_contract(capsys: pytest.CaptureFixture[str]) -> None:
     report = document(capsys, "run", "drop", "--seconds", "1")
     assert list(report) == [

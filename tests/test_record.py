@@ -12,7 +12,17 @@ import numpy as np
 import pytest
 from desk import bits
 
-from physicslab import InvalidValue, PhysicsConfig, Run, SimulationConfig, World, box, circle, load_scene
+from physicslab import (
+    InvalidValue,
+    PhysicsConfig,
+    Run,
+    SimulationConfig,
+    World,
+    box,
+    circle,
+    ensemble,
+    load_scene,
+)  # fmt: skip
 from physicslab.components import Drag, Mass, Name, Rod, Spring, Transform, Velocity
 from physicslab.diagnostics.energy import measure_energy
 from physicslab.scenes import SCENES
@@ -76,6 +86,20 @@ def held(tolerance: float) -> tuple[World, Counted]:
     world = World(spring, IntegrateSystem(), simulation=simulation)
     world.spawn(Transform((1.0, 0.0)), Velocity((0.0, 2.0)), Mass(1.0), Name("ball"))
     return world, spring
+
+
+@pytest.mark.parametrize("rate", [3.0, 80.0, 200.0, 500.0])
+@pytest.mark.parametrize("every", [None, 0.1])
+def test_instants_of_steps_that_are_divided_are_those_that_are_due(rate: float, every: float | None) -> None:
+    laws = PhysicsConfig(gravity_mode="none")
+    world = World(physics=laws, simulation=SimulationConfig(dt=1.0 / 30.0))
+    bob = world.spawn(Transform((1.0, 0.0)), Velocity((0.0, rate)), Mass(1.0), Name("bob"))
+    world.spawn(Rod(b=bob))
+    run = world.record(0.3, every=every)
+    stride = 1 if every is None else 3
+    assert run.times == pytest.approx(np.arange(9 // stride + 1) * stride / 30.0, abs=1e-15)
+    assert run.columns["bob.x"] == pytest.approx(np.cos(rate * run.times), abs=1e-9)
+    assert run.columns["bob.vy"] == pytest.approx(rate * run.columns["bob.x"], abs=1e-9 * rate)
 
 
 @pytest.mark.parametrize("tolerance", [1e-5, 1e-8, 1e-11, 1e-14])
@@ -324,6 +348,21 @@ def test_a_run_is_saved_with_every_bit(run: Run, tmp_path: Path) -> None:
     assert all(np.array_equal(*pair) for pair in zip(columns, run.table.values(), strict=True))
     with pytest.raises(ValueError, match=r"must end with one of \.npz, \.csv, \.parquet"):
         run.save(tmp_path / "run.xlsx")
+
+
+def test_headings_are_no_formulas(tmp_path: Path) -> None:
+    world = World()
+    circle(world, (0.0, 1.0), name="=1+1")
+    world.record(0.1).save(tmp_path / "run.csv")
+    assert (tmp_path / "run.csv").read_text("utf-8").startswith("time [s],'=1+1.x [m],")
+    out = tmp_path / "sweep.csv"
+    for _ in range(2):  # the second time it is read
+        found = ensemble(
+            thrown(), {"ball.Mass.mass": [1.0]}, measure={"=1+1": "ball.x"}, seconds=0.1, executor="serial",
+            out=out,
+        )  # fmt: skip
+        assert found.columns["=1+1"].tolist() == pytest.approx([0.7])
+    assert out.read_text("utf-8").startswith("ball.Mass.mass,'=1+1,")
 
 
 def test_tables_of_other_libraries_have_the_units(run: Run, tmp_path: Path) -> None:

@@ -15,13 +15,14 @@ from physicslab.components import Drag, Held, Mass, Material, Shape, Spring, Tra
 from physicslab.contacts.islands import export_rests, wake
 from physicslab.contacts.memory import export_contacts
 from physicslab.contacts.report import contact_between, list_contacts
-from physicslab.diagnostics.energy import measure_energy, measure_momentum
+from physicslab.diagnostics.energy import measure_account, measure_energy, measure_momentum
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.files.json_text import json_text
 from physicslab.files.scene import read_scene, write_scene
 from physicslab.lab.worlds import floor, open_space
 from physicslab.prefabs import box, circle, container, pendulum, pile, stack
+from physicslab.state.state import State
 from physicslab.systems.standard import standard_systems
 from physicslab.systems.system import ForceSystem, Stage, System, at
 from physicslab.world import World
@@ -688,3 +689,33 @@ def test_discs_in_a_corner_and_on_level_ground_fall_asleep_and_not_on_a_slope() 
 
     assert world_with(0.0)[1] == {3, 4}
     assert world_with(0.01)[1] == {3}
+
+
+class Idle(System):
+    """Does nothing within a substep, so that its stages are run one by one."""
+
+    @at(Stage.KICK)
+    def look(self, world: State, h: float) -> None:
+        """Do nothing."""
+
+
+@pytest.mark.parametrize("idle", [False, True])
+def test_gravity_pulls_and_contacts_hold_what_sleeps(idle: bool) -> None:
+    world = World(simulation=SimulationConfig(sleeping=True, contacts="soft"))
+    box(world, (0.0, -0.5), width=9.0, height=1.0, static=True)
+    for k in range(3):
+        box(world, (3.0, 0.25 + 0.5 * k), width=0.5, height=0.5, mass=2.0)
+    circle(world, (3.1, 9.0), radius=0.2, mass=0.5)  # wakes them when it lands
+    if idle:
+        world.install(Idle())
+    counts = []
+    for _ in range(20):
+        world.run(seconds=0.2)
+        counts.append(world.sleep.count)
+        account = measure_account(world)
+        assert account.momentum["gravity"].y == pytest.approx(-6.5 * 9.81 * world.time, rel=1e-12)
+        assert account.angular_momentum["gravity"] == pytest.approx(
+            -9.81 * world.time * (6.0 * 3.0 + 0.5 * 3.1), rel=1e-2
+        )
+        assert account.momentum["numerical"].magnitude < 1e-11
+    assert {0, 3} <= {*counts}, "they sleep, and wake"

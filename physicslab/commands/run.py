@@ -79,7 +79,7 @@ def _execute(world: World, arguments: Namespace, outputs: Mapping[str, Output], 
     if "png" in outputs:
         outputs["png"].write(_picture(world))
     if not any(output.to_stdout for output in outputs.values()):
-        print(run_summary({**report, "scene": label}, world.title))
+        print(run_summary({**report, "scene": label}, world.title, start))
     if stopped:
         raise CommandError(f"{label}: {stopped}", FAILED)
     return 0

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from physicslab.components import Mass, Material, Transform, Velocity
 from physicslab.kernels.accounts import CONTACT
 from physicslab.kernels.sleep import edits, islands
+from physicslab.kernels.solver import work
 from physicslab.state.state import State
 
 type _Marks = NDArray[np.bool_]
@@ -120,6 +121,17 @@ def _book_rest(state: State, falling: _Marks) -> None:
     x, y = position[free].T
     spin = (x * momentum[:, 1] - y * momentum[:, 0]).sum() + turned.sum()
     state.account.sums[CONTACT] -= (0.5 * energy, *momentum.sum(axis=0), spin)
+
+
+def book_sleep(state: State, asleep: _Marks, h: float) -> None:
+    """Book that gravity pulls bodies (rows,) that sleep for ``h`` seconds, and contacts hold them."""
+    physics, bodies = state.physics, state.bodies
+    if physics.gravity_mode == "linear":
+        work.book_held(
+            state.table(Transform)["position"], state.table(Mass)["mass"], bodies.inverse_mass,
+            np.where(asleep, 0.0, bodies.inverse_mass), physics.gravity.x, physics.gravity.y, h,
+            state.account.sums,
+        )  # fmt: skip
 
 
 def _begin(state: State) -> None:

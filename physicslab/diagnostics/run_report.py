@@ -275,14 +275,14 @@ def find_not_finite(report: object, place: str = "") -> str | None:
     return next((found for found in places if found is not None), None)
 
 
-def run_summary(report: Mapping[str, Any], title: str) -> str:
-    """Return a summary of a run, on a few lines."""
-    momentum = report["momentum"]
+def run_summary(report: Mapping[str, Any], title: str, start: float = 0.0) -> str:
+    """Return a summary of a run that began at ``start`` [s], on a few lines."""
+    momentum, began = report["momentum"], f"{start:.9g} s to " if start else ""
     wall = report["wall_s"]
     systems = ", ".join(f"{system['name']} {system['ms']:.1f} ms" for system in report["systems"])
     lines = [
         f"{report['scene']}: {printable(title)}" if title else str(report["scene"]),
-        f"  time        {report['time']:.9g} s in {report['steps']} steps of {report['dt']:.6g} s, "
+        f"  time        {began}{report['time']:.9g} s in {report['steps']} steps of {report['dt']:.6g} s, "
         f"{report['substeps']} substeps each",
         f"  method      {report['integrator']}: {report['integrator_reason']}; "
         f"{report['force_evaluations']} force evaluations",

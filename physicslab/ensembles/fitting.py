@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from physicslab.diagnostics.fits import covariance_of
 from physicslab.diagnostics.recorder import record
-from physicslab.diagnostics.samples import Record
+from physicslab.diagnostics.samples import Record, unit_of
 from physicslab.ecs.component import InvalidValue
 from physicslab.ecs.quantity_text import InvalidText
 from physicslab.ensembles.runs import check_condition
@@ -263,13 +263,25 @@ def _read(path: Path) -> dict[str, list[float]]:
             head, *rows = csv.reader(file)
     except (OSError, ValueError, csv.Error) as error:
         raise SceneError(f"data {path}: cannot be read: {reason_of(error)}") from error
-    found: dict[str, list[float]] = {name.strip(): [] for name in head}
+    found: dict[str, list[float]] = {_quantity(path, name): [] for name in head}
     for number, row in enumerate(rows, 2):
         if len(row) != len(head):
             raise SceneError(f"data {path}: line {number}: has {len(row)} cells; must have {len(head)}")
         for column, cell in zip(found.values(), row, strict=True):
             column.append(_cell(path, number, cell))
     return found
+
+
+def _quantity(path: Path, heading: str) -> str:
+    """Return the quantity of a column, without the unit that ``Run.save`` writes behind it."""
+    name, _, unit = heading.strip().removeprefix("'").partition(" [")
+    try:
+        usual = "s" if name == "time" else unit_of(name)
+    except KeyError:  # what is no quantity is refused later, with the names that there are
+        return heading.strip()
+    if unit and unit != f"{usual}]":
+        raise SceneError(f"data {path}: column {shown(heading)}: must be in {usual}")
+    return name
 
 
 def _cell(path: Path, number: int, cell: str) -> float:

@@ -157,7 +157,7 @@ def write_result(path: Path, columns: Mapping[str, Values], failures: Mapping[in
         elif path.suffix == ".csv":
             text = io.TextIOWrapper(file, encoding="utf-8", newline="")
             rows = csv.writer(text, lineterminator="\n")
-            rows.writerow(columns)
+            rows.writerow(map(table_cell, columns))
             cells = [
                 column.tolist() if column.dtype != object else map(table_cell, column)
                 for column in columns.values()
@@ -182,7 +182,7 @@ def read_result(path: Path, names: Sequence[str]) -> tuple[list[NDArray[np.float
         with open(path, newline="", encoding="utf-8") as file:
             rows = csv.reader(file)
             head = next(rows)
-            wanted, last = [head.index(name) for name in names], head.index("failure")
+            wanted, last = [head.index(table_cell(name)) for name in names], head.index("failure")
             failures = {}
             for number, row in enumerate(rows):
                 numbers.extend(float(row[place]) for place in wanted)

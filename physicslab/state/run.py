@@ -13,7 +13,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.ecs.text import no_such
+from physicslab.ecs.text import no_such, table_cell
 
 type Column = NDArray[np.float64]
 """A float64 array (instants,)."""
@@ -217,7 +217,7 @@ def _csv(run: Run) -> bytes:
     """Return rows with a heading; numbers keep every bit."""
     stream, units = io.StringIO(), run.units
     rows = csv.writer(stream, lineterminator="\n")
-    rows.writerow(f"{name} [{units[name]}]" for name in run.table)
+    rows.writerow(table_cell(f"{name} [{units[name]}]") for name in run.table)
     rows.writerows(zip(*(column.tolist() for column in run.table.values()), strict=True))
     return stream.getvalue().encode()
 

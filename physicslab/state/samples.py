@@ -14,8 +14,8 @@ FIELDS = 6
 """Numbers of a body at an instant: x, y, angle and their rates."""
 _LATE = 1e-6
 """Share of a step by which the end of one may be late: the clock is a sum of rounded steps."""
-_LONGER = 2e-3
-"""Share of a step by which the last of a run may be longer."""
+_LONGER = 1.1e-3
+"""Share of a step by which the last of a run may be longer: less than a part of one that is divided."""
 NOTHING_SAMPLED = np.zeros(0, np.int64), np.zeros((0, 0)), 1, 1
 """Samples of no row, as kernels take them (:class:`physicslab.kernels.arguments.Sampled`)."""
 
@@ -93,6 +93,9 @@ class Samples:
         done, end = self._done(time), self._done(time + span)
         places = np.arange(done // self.stride + 1, end // self.stride + 1)
         after = (places * self.stride - done) * self.dt
+        within = time - (self._start + done * self.dt)
+        if abs(within) > _LATE * self.dt:  # in the middle of a step
+            after -= within
         return places, np.where(after < span - _LONGER * self.dt, after, span)
 
     def put(self, places: NDArray[np.int64], times: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -1,6 +1,6 @@
 """Steps in which everything sleeps."""
 
-from physicslab.contacts.islands import all_asleep
+from physicslab.contacts.islands import all_asleep, book_sleep
 from physicslab.ecs.sentences import sentence
 from physicslab.state.state import State
 from physicslab.stepping.plan import StepPlan
@@ -31,6 +31,7 @@ class Asleep(Stepper):
     def advance(self, state: State, h: float, steps: int) -> Advance:
         """Let the time go by."""
         state.substeps = state.simulation.substeps
+        book_sleep(state, state.sleep.asleep, steps * h)
         if state.samples is not None:
             state.samples.repeat(state, state.time, steps * h)
         return Advance(steps)

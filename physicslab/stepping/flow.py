@@ -41,7 +41,7 @@ ones. Joints whose forces grow without limit take as much for no motion at all."
 _FOLLOWED = 1e-13
 """The largest tolerance, where it is not the configured one, with which samples are taken within steps. Their
 errors are some four times it, and do not die out, as those of the steps do where a larger one is chosen."""
-_FINEST = 1024
+_FINEST = 512
 """Parts of a step, of which as many are taken together as such a span can have."""
 
 _NONE_DUE = np.zeros(0, np.int64), np.zeros(0), np.zeros((2, 0, 0))

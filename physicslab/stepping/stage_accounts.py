@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from physicslab.components import Mass, Spring, Transform, Velocity
 from physicslab.contacts.arguments import inverse_in
+from physicslab.contacts.islands import book_sleep
 from physicslab.ecs.vector import Vector2
 from physicslab.kernels import direct_entry
 from physicslab.kernels.accounts import DAMPING, ENERGY, FIELDS, GRAVITY, HAND, OVERLAP
@@ -47,7 +48,7 @@ class StageAccounts:
         Whether forces act that are not uniform: the kernel books another work of moving bodies apart.
     """
 
-    kernels: tuple[Any, ...] = (work.book_kick, work.book_damping)
+    kernels: tuple[Any, ...] = (work.book_kick, work.book_damping, work.book_held)
 
     def __init__(
         self, state: State, forces: Sequence[ForceSystem], *, flown: bool = False, kicked: bool = True
@@ -130,6 +131,8 @@ class StageAccounts:
                 position, bodies.force, bodies.torque, state.table(Mass)["mass"], mass, inertia,
                 bodies.sub_integrated, self.gravity.x, self.gravity.y, self.other, h, state.account.sums,
             )  # fmt: skip
+        if state.sleep.count:
+            book_sleep(state, state.sleep.asleep, h)
         if physics.linear_damping > 0.0 or physics.angular_damping > 0.0:
             work.book_damping(
                 position, velocity["linear"], velocity["angular"], bodies.force, bodies.torque, mass,

@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from physicslab.components import Charge, Mass, Shape, Transform, Velocity
 from physicslab.contacts.arguments import do_stage, near_in
-from physicslab.contacts.islands import check_edits, fall_asleep, keep_places, wake, wake_all
+from physicslab.contacts.islands import book_sleep, check_edits, fall_asleep, keep_places, wake, wake_all
 from physicslab.ecs.sentences import sentence
 from physicslab.kernels import Plain, motion, near_counts
 from physicslab.kernels.accounts import GRAVITY
@@ -36,7 +36,7 @@ class SleepSystem(System):
     engine = True
     kernels = (
         *Sleep.kernels, islands.count_rest, islands.find_held, islands.find_touched, edits.find_pushed,
-        motion.kick, work.book_kick,
+        motion.kick, work.book_kick, work.book_held,
     )  # fmt: skip
 
     def why_left_out(self, state: State) -> str | None:
@@ -97,6 +97,7 @@ class SleepSystem(System):
                 inverse, bodies.inverse_inertia, bodies.sub_integrated, 0.0, 0.0, GRAVITY, before,
                 state.account.sums,
             )  # fmt: skip
+            book_sleep(state, woken, -before)  # that it was held in this kick
             motion.kick(
                 velocity["linear"], velocity["angular"], bodies.force, bodies.torque, inverse,
                 bodies.inverse_inertia, bodies.sub_integrated, state.physics.linear_damping,

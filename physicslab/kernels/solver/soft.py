@@ -52,7 +52,7 @@ from physicslab.kernels.solver.stages import (
     resolve_all_impacts,
     resolve_later_impacts,
 )
-from physicslab.kernels.solver.work import book_damping, book_gravity, book_kick, note_flow
+from physicslab.kernels.solver.work import book_damping, book_gravity, book_held, book_kick, note_flow
 from physicslab.kernels.ticks import charge, ticks
 from physicslab.kernels.wide.graph_colour import ADDED, MIN_WIDE, SPARSE, add_to_blocks
 
@@ -241,6 +241,11 @@ def _advance(
                     book_kick(
                         position, acting.force, acting.torque, gravity.mass, inverse.mass, inverse.inertia,
                         sub_integrated, gravity.gx, gravity.gy, gravity.other, span, account,
+                    )  # fmt: skip
+                if sleepers.number > 0:
+                    book_held(
+                        position, gravity.mass, gravity.inverse_mass, inverse.mass, gravity.gx, gravity.gy,
+                        span, account,
                     )  # fmt: skip
                 if damped:
                     book_damping(

@@ -322,6 +322,23 @@ def book_gravity(
 
 
 @kernel
+def book_held(
+    position: Vectors, mass: Numbers, inverse_mass: Numbers, awake_inverse_mass: Numbers, gx: float,
+    gy: float, h: float, account: Vectors,
+) -> None:  # fmt: skip
+    """Book that gravity pulls bodies that sleep for ``h`` seconds, and that contacts hold them."""
+    px, py, spin = 0.0, 0.0, 0.0
+    for i in range(len(mass)):
+        if inverse_mass[i] > 0.0 and awake_inverse_mass[i] == 0.0:
+            jx, jy = h * mass[i] * gx, h * mass[i] * gy
+            px += jx
+            py += jy
+            spin += position[i, 0] * jy - position[i, 1] * jx
+    book(account[GRAVITY], 0, 0.0, px, py, spin)
+    book(account[CONTACT], 0, 0.0, -px, -py, -spin)
+
+
+@kernel
 def book_kick(
     position: Vectors, force: Vectors, torque: Numbers, mass: Numbers, inverse_mass: Numbers,
     inverse_inertia: Numbers, sub_integrated: Flags, gx: float, gy: float, other: int, h: float,
