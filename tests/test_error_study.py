@@ -95,7 +95,7 @@ def test_the_key_measures_in_another_process_and_shows_the_plot(
     assert "leapfrog" not in words and "leapfrog" not in lines
     assert any("after 5 s" in shown and "Compared with the tightest method" in shown for shown in words)
     samples = desk.window.error_study.samples
-    assert {"rk4, at most", "at most 1e-07 m", "0.001 m"} <= set(words)
+    assert {"rk4, at most", "at most 1·10⁻⁷ m", "0.001 m"} <= set(words)
     names = Counter(f"{s.name}, at most" if s.at_most else s.name for s in samples)
     assert {name: len(costs) for name, (costs, _) in lines.items()} == names
     for name, (costs, errors) in lines.items():

@@ -1,6 +1,7 @@
 """Numbers with units, as people read them; units of slopes and areas."""
 
 import math
+import re
 from collections import Counter
 
 from physicslab.ecs.vector import Vector2
@@ -10,6 +11,8 @@ ROUNDING = 1e-12
 _LEAST_ERROR, _PLAIN = 1e-12, 3
 """Share of a value from which its error is written, and powers of ten that need no exponent."""
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+_OF_TEN = re.compile(r"(?<=\d)e(-?)\+?0*(\d+)(?= [A-Za-z%°])")
+"""The power of ten of a number that has a unit."""
 
 
 def quantity(value: float, unit: str) -> str:
@@ -39,6 +42,15 @@ def _figures(value: float, behind: int, *, last: int = 5, most: int = 4, slack: 
         return f"{value:.{min(max(behind - power, 0), most)}f}"
     digits, _, exponent = f"{value:.{behind}e}".partition("e")
     return f"{digits}·10{str(int(exponent)).translate(_RAISED)}"
+
+
+def with_powers(text: str) -> str:
+    """Return a text with powers of ten as people write them, but for numbers without unit, as in settings.
+
+    >>> with_powers("deepest overlap 1.1e-05 m, 2e+07 J"), with_powers("simulation.dt = 1e-05")
+    ('deepest overlap 1.1·10⁻⁵ m, 2·10⁷ J', 'simulation.dt = 1e-05')
+    """
+    return _OF_TEN.sub(lambda found: f"·10{''.join(found.groups()).translate(_RAISED)}", text)
 
 
 def without_turns(degrees: float) -> float:

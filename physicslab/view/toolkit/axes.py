@@ -13,7 +13,7 @@ _AXES = 3
 _ROUNDING = 1e-9
 """Share of a step by which a tick may lie beyond an end."""
 _DECIMALS = 6
-"""Up to so many decimals a number is written without a power of ten."""
+"""Decimals, and figures before the point, up to which a number is written without a power of ten."""
 _APART = (3.5, 1.6)
 """Least distance between ticks across and along, in heights of the text."""
 
@@ -51,13 +51,17 @@ def _ticks(low: float, high: float, most: int) -> Iterator[tuple[float, str]]:
 
     >>> [text for _, text in _ticks(-0.21, 0.4, 4)], [text for _, text in _ticks(-12.5, -12.4989, 3)]
     (['-0.2', '0.0', '0.2', '0.4'], ['-12.5000', '-12.4995', '-12.4990'])
+    >>> [text for _, text in _ticks(0.0, 1.6e7, 4)], [text for _, text in _ticks(0.0, 9e3, 3)]
+    (['0', '5e6', '10e6', '15e6'], ['0', '5000'])
     """
     if not (math.isfinite(high - low) and high > low):
         return
     step = rounded_up((high - low) / most)
     decimals = -math.floor(math.log10(step * (1.0 + _ROUNDING)))
+    plain = decimals <= _DECIMALS and max(-low, high) < 10.0**_DECIMALS
+    scale, behind, power = (1.0, max(decimals, 0), "") if plain else (10.0**decimals, 0, f"e{-decimals}")
     for k in range(math.ceil(low / step - _ROUNDING), math.floor(high / step + _ROUNDING) + 1):
-        yield k * step, f"{k * step:z.{decimals}f}" if 0 <= decimals <= _DECIMALS else f"{k * step:.7g}"
+        yield k * step, f"{k * step * scale:z.{behind}f}{power if k else ''}"
 
 
 def _powers(low: float, high: float) -> Iterator[tuple[float, str]]:

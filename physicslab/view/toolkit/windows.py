@@ -13,6 +13,7 @@ from physicslab.languages.language import Language, language
 from physicslab.theme import Theme
 from physicslab.view.canvas.canvas import Rect
 from physicslab.view.canvas.drawable_text import drawable
+from physicslab.view.canvas.quantities import with_powers
 from physicslab.view.toolkit.style import Fonts
 
 _FLAGS = imgui.WindowFlags_
@@ -68,7 +69,7 @@ _KEPT = 4096
 
 @lru_cache(_KEPT)
 def _said(own: Language, words: str) -> str:
-    return drawable(own.reword(words))
+    return with_powers(drawable(own.reword(words)))
 
 
 class Spoken(NamedTuple):
@@ -154,7 +155,7 @@ class Windows:
 
     def said(self, words: str) -> str:
         """Return words in the language of the window, as they can be drawn."""
-        return _said(self.language, words) if type(words) is str else drawable(self.language.reword(words))
+        return (_said if type(words) is str else _said.__wrapped__)(self.language, words)
 
     def written(self, words: str) -> str:
         """Return words as :meth:`said` does, and note that they are written."""
