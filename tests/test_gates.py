@@ -294,6 +294,26 @@ def test_a_blow_within_the_step_is_no_crossing_of_what_it_does_not_reach(bounce:
     assert gate.crossings == ()
 
 
+@pytest.mark.parametrize("height", [0.5, 0.3, 0.26, 0.2501])
+@pytest.mark.parametrize("dt", [1.0 / 25.0, 1.0 / 60.0, 0.01])
+def test_what_bounces_is_timed_up_to_the_impact_and_from_it_on(height: float, dt: float) -> None:
+    world = World(*standard_systems(), simulation=SimulationConfig(dt=dt))
+    box(world, (0.0, -0.5), width=9.0, height=1.0, static=True, restitution=0.8, friction=0.0)
+    for x in (-2.0, 0.0, 2.0):  # three islands, alike
+        circle(world, (x, 4.0), radius=0.25, restitution=0.8, friction=0.0)
+    world.spawn(Gate((-4.0, height), (4.0, height)))
+    world.run(seconds=1.2)
+    gates = world.schedule.find(GateSystem)
+    assert gates is not None
+    g, fast = 9.81, math.sqrt(2.0 * 9.81 * 3.75)
+    down, up = math.sqrt(fast**2 - 2.0 * g * (height - 0.25)), 0.8 * fast
+    late = math.sqrt(up**2 - 2.0 * g * (height - 0.25))
+    expected = [down / g] * 3 + [fast / g + (up - late) / g] * 3
+    assert times(gates) == pytest.approx(expected, abs=1e-12)
+    assert [one.speed for one in gates.crossings] == pytest.approx([down] * 3 + [late] * 3, rel=1e-9)
+    assert [one.direction for one in gates.crossings] == [-1, -1, -1, 1, 1, 1]
+
+
 def test_a_gate_that_moves_with_a_body_is_crossed_by_what_stands_still() -> None:
     gate = GateSystem()
     world = World(IntegrateSystem(), gate)

@@ -12,6 +12,7 @@ from physicslab.state.samples import ends_of_steps, motion_of_rows
 from physicslab.state.state import State
 from physicslab.systems.gate_passage import Moments, Passage, Roots
 from physicslab.systems.system import Stage, System, at
+from physicslab.systems.within_step import split_at_impacts
 
 LIMIT = 500
 """Crossings that are kept; the oldest go first."""
@@ -70,6 +71,7 @@ class GateSystem(System):
         self._side = np.zeros((0, 0), np.int8)  # 0: not known yet, as for one that was put on the gate
         self._pending: dict[tuple[int, int], Crossing | None] = {}
         self._before: _Numbers | None = None
+        self._logged = 0
         self._kept: tuple[NDArray[Any], ...] = ()
         self._rows = np.zeros((0, 5))
         self._rows_of: tuple[Crossing, ...] = self.crossings
@@ -124,7 +126,8 @@ class GateSystem(System):
 
     @at(Stage.PREPARE)
     def begin(self, state: State, h: float) -> None:
-        """Note where everything is at the beginning of the step."""
+        """Note where everything is at the beginning of the step, and that impacts are to be logged."""
+        state.contacts.read, self._logged = True, state.contacts.logged
         self._before = motion_of_rows(state, self._followed(state))
         if self.crossings and self.crossings[-1].time > state.time + h:  # the clock was set back
             self.crossings = tuple(one for one in self.crossings if one.time <= state.time)
@@ -134,17 +137,23 @@ class GateSystem(System):
         """Note what was crossed within the step, or within each of the steps that were one call."""
         if self._before is None:
             return
-        ends = ends_of_steps(state.samples, state, self._followed(state), state.time, state.time + h, h)
-        moments = self._moments(state, np.concatenate((self._before[None], ends.motion)))
+        followed = self._followed(state)
+        ends = ends_of_steps(state.samples, state, followed, state.time, state.time + h, h)
+        begins, spans, motion = split_at_impacts(
+            state.contacts.impacts_since(self._logged), state.entity_index.entities[followed],
+            np.append(state.time, ends.times[:-1]), ends.spans,
+            np.concatenate((self._before[None], ends.motion)),
+        )  # fmt: skip
+        moments = self._moments(state, motion)
         distance, width, side = moments.distance, moments.width, moments.sides(self._side)
         through = (side[1:] != side[:-1]) & (side[:-1] != 0)
         on_line = (np.abs(distance[1:]) <= width[1:]) & ((distance[1:] > 0.0) != (distance[:-1] > 0.0))
-        crossed = through | on_line | moments.may_return(side[:-1], ends.spans)
-        begins, seen = np.append(state.time, ends.times[:-1]), 0
+        crossed = through | on_line | moments.may_return(side[:-1], spans)
+        seen = 0
         for step in np.flatnonzero(crossed.any(axis=(1, 2))).tolist():
             self._drop_pending(moments, seen, step + 1)
             gate, body = np.nonzero(crossed[step])
-            span, seen = float(ends.spans[step]), step + 1
+            span, seen = float(spans[step]), step + 1
             roots = Passage(moments, step, gate, body, span).roots()
             deep = roots.beyond > width[step + 1, gate, 0]
             found = (through[step, gate, body], deep, float(begins[step]), span)

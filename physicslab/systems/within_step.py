@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -86,3 +87,58 @@ class StepPath:
         straight = np.where(s < corner[:, None], before, after)
         velocity: _Numbers = np.where(np.isnan(corner)[:, None], smooth, straight)
         return velocity
+
+
+def split_at_impacts(
+    impacts: NDArray[Any], entities: NDArray[np.int64], begins: _Numbers, spans: _Numbers, motion: _Numbers
+) -> tuple[_Numbers, _Numbers, _Numbers]:
+    """Return steps that end where something is struck, so that no path within one has a corner.
+
+    Parameters
+    ----------
+    impacts : array of IMPACT (n,)
+        In the order of time.
+    entities : int64 array (k,)
+        Whose motion it is.
+    begins, spans : float64 arrays (t,)
+        When each step begins, and how long it is [s].
+    motion : float64 array (t + 1, k, 6)
+        x and y [m], the angle [rad] and their rates, at the beginning of the first and the ends of all.
+
+    Returns
+    -------
+    begins, spans, motion : float64 arrays
+        Likewise; between the end of a step and the beginning of the next at an impact is one of no length.
+    """
+    every, known = np.arange(len(entities)), set[int]()
+    struck = np.isin(impacts["entity_a"], entities) | np.isin(impacts["entity_b"], entities)
+    for impact in impacts[struck]:
+        time, step = float(impact["time"]), int(np.searchsorted(begins, impact["time"], side="right")) - 1
+        if step < 0 or time > begins[step] + spans[step]:
+            continue
+        early = time - begins[step]
+        if early > 0.0:
+            known.clear()
+            (first, last), span = motion[step : step + 2], spans[step]
+            path = StepPath.between(first[:, :3], last[:, :3], first[:, 3:], last[:, 3:], span)
+            share = np.full(len(every), early / span)
+            there = np.hstack((path.at(every, share), path.velocity(every, share)))
+            motion = np.insert(motion, step + 1, (there, there), axis=0)
+            spans = np.concatenate((spans[:step], (early, 0.0, span - early), spans[step + 1 :]))
+            begins = np.insert(begins, step + 1, (time, time))
+            step += 2
+        elif not step or spans[step - 1] > 0.0:
+            continue  # it ended the step before
+        for body in "ab":
+            entity = int(impact[f"entity_{body}"])
+            own = entities == entity
+            place = [impact[name] for name in (f"center_{body}x", f"center_{body}y", f"angle_{body}")]
+            before, after = (
+                [impact[f"{moment}_{part}"] for part in (f"{body}x", f"{body}y", f"w{body}")]
+                for moment in ("before", "after")
+            )
+            motion[step - 1 : step + 1, own, :3], motion[step, own, 3:] = place, after
+            if entity not in known:  # else it was struck twice at this moment
+                motion[step - 1, own, 3:] = before
+                known.add(entity)
+    return begins, spans, motion
