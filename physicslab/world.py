@@ -368,9 +368,9 @@ class World(Facade):
             self.islands.joined = False
             self.plan, self.steppers = remake(self, self.schedule, None)
 
-    def _choose(self, plan: StepPlan | None = None) -> None:
-        """Choose steppers again for the same systems, and the method, unless there is a ``plan`` already."""
-        self.plan, self.steppers = choose(self, self.schedule, plan)
+    def _choose(self) -> None:
+        """Choose steppers again for the same systems, and the method."""
+        self.plan, self.steppers = choose(self, self.schedule)
 
     def resume(self, collisions: str, method: str, steps: int) -> None:
         """Go on with what was chosen before this world was saved (:attr:`StepPlan.kept`), where possible."""

@@ -18,7 +18,8 @@ from physicslab.files.assignments import assign
 from physicslab.files.checks import SceneError
 from physicslab.prefabs import box, circle
 from physicslab.state import joint_figures
-from physicslab.state.joint_rows import measured
+from physicslab.state.joint_rows import Measure, Term, measured
+from physicslab.state.joints import Joints
 from physicslab.state.state import State
 from physicslab.stepping.flow import Flow, NotSmooth
 from physicslab.stepping.plan import WITHOUT_END
@@ -136,6 +137,14 @@ def test_assignments_are_refused_by_what_is_wrong(text: str, words: str) -> None
     assert words in str(refused.value)
 
 
+def term_of(joints: Joints, n: int) -> Term:
+    (ax, ay), (bx, by), (x, y) = (
+        array[n].tolist() for array in (joints.anchor_a, joints.anchor_b, joints.axis)
+    )
+    ends = Measure(joints.measure[n]), int(joints.a[n]), int(joints.b[n])
+    return Term(*ends, (ax, ay), (bx, by), (x, y), float(joints.scale[n]))
+
+
 def test_figures_of_all_joints_are_those_of_their_terms_one_by_one() -> None:
     other = (Transform((1.0, 0.5), 0.4), Velocity((0.3, 0.2), 1.0), Mass(2.0), Shape.box(1.0, 0.4))
     joints = (
@@ -145,9 +154,8 @@ def test_figures_of_all_joints_are_those_of_their_terms_one_by_one() -> None:
     )
     world = world_with(*joints, bar=other)
     world.step()
-    rows = world.joints
     for n, found in enumerate(joint_figures.measured_terms(world)):
-        assert found == pytest.approx(measured(rows.term(n), world.entity_index)[:-1], abs=1e-15)
+        assert found == pytest.approx(measured(term_of(world.joints, n), world.entity_index)[:-1], abs=1e-15)
     on_bodies = np.zeros_like(world.bodies.force)
     for row in range(1, 3):
         on_bodies[row] = sum(joint_figures.forces_on(world, row).values())

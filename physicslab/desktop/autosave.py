@@ -11,6 +11,9 @@ from physicslab.files.replace import replace_file
 from physicslab.files.writer import SceneText, WorldSnapshot
 from physicslab.world import World
 
+_PATIENCE = 5.0
+"""How long [s] a saving that is under way is waited for where the world is to be saved at once."""
+
 
 class Autosave:
     """Saves a world when something changed, at most every ``period`` seconds.
@@ -113,18 +116,13 @@ class Autosave:
         if failure:
             self._saved = ()
 
-    def save(self, world: World, patience: float = 5.0) -> None:
+    def save(self, world: World) -> None:
         """Save the world at once if it is not what was saved last, and save no more after that.
 
-        Parameters
-        ----------
-        world : World
-            The world to save; where that fails, ``failure`` is the reason, and the state saved before stays.
-        patience : float
-            How long a saving that is under way is waited for [s].
+        Where that fails, ``failure`` is the reason, and the state saved before stays.
         """
         under_way = self._writing is not None
-        self.stop(patience)
+        self.stop(_PATIENCE)
         if not under_way and _state(world) == self._saved and not self._outcome:
             return
         try:

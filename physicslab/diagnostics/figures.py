@@ -171,12 +171,15 @@ class Figures:
         return self._through(self._curve(column, place, self._piece(name, time, after)), column, time)
 
     def _piece(self, name: str, time: float, after: bool) -> range:
-        """Return the samples between the impacts before and behind a time [s]; all if these are too few."""
+        """Return the samples between the impacts before and behind a time [s], or the two around it."""
         times, breaks = self.record.times, self.record.breaks.get(name, [])
         k = (bisect.bisect_right if after else bisect.bisect_left)(breaks, time)
         first = bisect.bisect_left(times, breaks[k - 1]) if k else 0
         stop = bisect.bisect_left(times, breaks[k]) if k < len(breaks) else len(times)
-        return range(first, stop) if stop - first > 1 else range(len(times))
+        if not breaks or stop - first > 1:
+            return range(first, stop)
+        place = max(bisect.bisect_left(times, time), 1)
+        return range(place - 1, place + 1)
 
     def _through(self, nodes: Sequence[int], column: Sequence[float], time: float) -> float:
         """Return the value at a time [s] of Lagrange's polynomial through some samples."""

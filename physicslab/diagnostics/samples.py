@@ -121,9 +121,9 @@ class Record:
 
     def _note_impacts(self) -> None:
         """Note when impacts were since the last time."""
-        joints, entities = self._world.joints.joints, self._world.entity_index.entities
-        held = {int(entities[row]) for joint in joints for row in (joint.a, joint.b)}
         for records in self._impacts.read():
+            joints, entities = self._world.joints.joints, self._world.entity_index.entities
+            held = {int(entities[row]) for joint in joints for row in (joint.a, joint.b)}
             columns = (records[name].tolist() for name in ("time", "entity_a", "entity_b"))
             for time, *pair in zip(*columns, strict=True):
                 for breaks, (_, body) in zip(self.breaks.values(), self._sources, strict=True):

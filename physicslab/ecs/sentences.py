@@ -159,7 +159,6 @@ SENTENCES = {
     "compressed_to_nothing": "a spring may be pressed together to nothing",
     "thrust_turns": "a thrust turns with its body",
     "joint_limit": "a {joint} has a limit, or a motor that may stall",
-    "rows_not_solved": "a {joint} has rows that it does not solve",
     "energy_from_nowhere": "press on each other, and contacts have given energy that comes from nowhere",
     "and_lost_by_now": "{why}; {energy} J of the energy is an error by now",
     "moved_apart": "was added by moving bodies apart that overlapped",

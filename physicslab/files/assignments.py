@@ -1,5 +1,6 @@
 """Values that texts give to fields of a scene: ``--set ball.Mass.mass="2 kg"``."""
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
@@ -7,12 +8,22 @@ from typing import Any
 from physicslab.ecs.component import Component, Field, InvalidValue
 from physicslab.ecs.quantity_text import InvalidText, evaluate_as
 from physicslab.files.checks import SceneError, shown
-from physicslab.files.places import SECTIONS, Place, Section, entity_names, known_words, read_path, words_of
+from physicslab.files.places import (
+    SECTIONS,
+    Place,
+    Section,
+    entity_names,
+    known_words,
+    no_part,
+    read_path,
+    words_of,
+)  # fmt: skip
 from physicslab.files.reader import check_scene
 from physicslab.files.writer import write_scene
 from physicslab.world import World
 
 _WORDS = {"true": True, "false": False}
+_PART = re.compile(r"(?P<whole>[^=]+)\.(?P<part>[xyz])\s*=(?P<value>.*)", re.DOTALL)
 
 
 def assign(world: World, texts: Sequence[str]) -> None:
@@ -23,9 +34,9 @@ def assign(world: World, texts: Sequence[str]) -> None:
     world : World
         Whose fields.
     texts : sequence of str
-        Each ``ID.Component.field=VALUE``, or ``physics.field=VALUE`` and ``simulation.field=VALUE``; of two
-        for one field the later holds. An entity without an id is called as in ``run --json``: what it is and
-        its number, ``circle 3``.
+        Each ``ID.Component.field=VALUE``, or ``physics.field=VALUE`` and ``simulation.field=VALUE``, with
+        ``.x`` or ``.y`` behind the field for a part of a vector; of two for one field the later holds. An
+        entity without an id is called as in ``run --json``: what it is and its number, ``circle 3``.
 
     Raises
     ------
@@ -38,9 +49,19 @@ def assign(world: World, texts: Sequence[str]) -> None:
     names = entity_names(world)
     given: dict[tuple[str, type[Component] | Section], dict[str, tuple[str, Any]]] = {}
     for text in texts:
-        name, kind, spec, value = read_path(world, names, text, "--set", "VALUE")
-        fields = given.setdefault((name, kind), {})
-        fields[spec.name] = value, _value(spec, value, names, words_of(name, kind, spec))
+        part = _PART.match(text)
+        path = text if part is None else f"{part['whole']}={part['value']}"
+        name, kind, spec, value = read_path(world, names, path, "--set", "VALUE")
+        fields, words = given.setdefault((name, kind), {}), words_of(name, kind, spec)
+        if part is None:
+            fields[spec.name] = value, _value(spec, value, names, words)
+            continue
+        place = Place(name, names.get(name, 0), kind, spec, part["part"], "--set")
+        if spec.kind != "vector" or place.part == "z":
+            raise SceneError(no_part(words, spec, place.part, value))
+        number = _value(replace(spec, kind="number"), value, names, f"{words}.{place.part}")
+        held = fields[spec.name][1] if spec.name in fields else place.read(world)
+        fields[spec.name] = value, place.whole(held, number)
     for (name, kind), fields in given.items():
         _replace(world, name, names.get(name, 0), kind, fields)
     check_scene(write_scene(world), "--set")

@@ -139,11 +139,12 @@ def find_place(
     name, kind, spec, _ = read_path(world, names, f"{whole}={value}", option, value)
     found = Place(name, names.get(name, 0), kind, spec, letter, option)
     if letter and (spec.kind != "vector" or letter not in "xy"):
-        raise SceneError(_no_part(found.words, spec, letter, value))
+        raise SceneError(no_part(found.words, spec, letter, value))
     return found
 
 
-def _no_part(words: str, spec: Field, letter: str, value: str) -> str:
+def no_part(words: str, spec: Field, letter: str, value: str) -> str:
+    """Return why a field has not the part that was named."""
     allowed = "a number, or a part of a vector" if spec.kind != "vector" else "a part of it, .x or .y"
     return f"{words}{_given(value)}: must be {allowed}; it has no .{letter}"
 
@@ -174,7 +175,7 @@ def read_path(
     where = f"{option}: entity {shown(name)}: {_shown(component)}"
     if name in SECTIONS and name not in names:
         spec = _spec(f"{option}: {name}", SECTIONS[name].FIELDS, component, value)
-        raise SceneError(_no_part(words_of(name, SECTIONS[name], spec, option), spec, field, value))
+        raise SceneError(no_part(words_of(name, SECTIONS[name], spec, option), spec, field, value))
     if name not in names:
         raise SceneError(
             f"{where}.{_shown(field)}{_given(value)}: there is no such entity{known_words(name, names)}"

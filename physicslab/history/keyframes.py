@@ -36,9 +36,6 @@ class Keyframes:
         self._along, self._nearby = _Frames(), _Frames()
         self.spacing = 1
 
-    def __len__(self) -> int:
-        return len(self._along.places) + len(self._nearby.places)
-
     def __contains__(self, place: int) -> bool:
         return place in self._along.by_place or place in self._nearby.by_place
 

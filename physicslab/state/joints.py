@@ -1,6 +1,6 @@
 """Joints as rows of constraints: one table, whatever kind of joint a row comes from."""
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from itertools import combinations
 from typing import Any, NamedTuple
 
@@ -16,7 +16,7 @@ from physicslab.kernels.joints.blocks import Joints as JointArguments
 from physicslab.languages.sentence import Sentence
 from physicslab.state.entities import label_in_context
 from physicslab.state.joint_order import NO_BLOCKS, Blocks, buffers_of, order_rows
-from physicslab.state.joint_rows import KINDS, Joined, Measure, Role, Row, Term, ends_of, measured
+from physicslab.state.joint_rows import KINDS, Joined, Role, Row, ends_of, measured
 
 
 class Joint(NamedTuple):
@@ -46,7 +46,7 @@ class Joints:
     joints : tuple of Joint
         Which joint has which rows, in the order of rows.
     measure : int64 array (m,)
-        Measure of each term, a :class:`Measure`.
+        Measure of each term, a :class:`physicslab.state.joint_rows.Measure`.
     a, b : int64 arrays (m,)
         The rows of its bodies; 0 is the world.
     anchor_a, anchor_b, axis : float64 arrays (m, 2)
@@ -140,14 +140,6 @@ class Joints:
 
     def __len__(self) -> int:
         return len(self.role)
-
-    def term(self, n: int) -> Term:
-        """Return a term."""
-        (ax, ay), (bx, by), (x, y) = (
-            array[n].tolist() for array in (self.anchor_a, self.anchor_b, self.axis)
-        )
-        ends = Measure(self.measure[n]), int(self.a[n]), int(self.b[n])
-        return Term(*ends, (ax, ay), (bx, by), (x, y), float(self.scale[n]))
 
     def rebuild(self, index: EntityIndex) -> bool:
         """Take the joints that there are; return whether they are others than before. Impulses are kept."""
@@ -244,17 +236,6 @@ class Joints:
         """Return which joint has other rows, or ``None``."""
         left = (joint.kind.__name__ for joint in self.joints if not self.solved[joint.own].all())
         return next((sentence("joint_limit", joint=Sentence(kind)) for kind in left), None)
-
-    def why_not(self, roles: Collection[Role], measures: Collection[Measure], terms: int = 2) -> str | None:
-        """Return which joint has rows of others than these, or of more terms, or ``None``."""
-        for joint in self.joints:
-            own = joint.own
-            if not set(self.role[own].tolist()) <= {*roles} or (terms < 2 and self.second[own].max() >= 0):
-                return sentence("rows_not_solved", joint=Sentence(joint.kind.__name__))
-            ends = [*range(own.start, own.stop), *self.second[own][self.second[own] >= 0].tolist()]
-            if not set(self.measure[ends].tolist()) <= {*measures}:
-                return sentence("rows_not_solved", joint=Sentence(joint.kind.__name__))
-        return None
 
     def kept(self) -> Iterator[tuple[int, str, list[float]]]:
         """Yield of each joint that has impulses its entity, its kind and these [N s]."""

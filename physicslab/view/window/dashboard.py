@@ -128,11 +128,6 @@ class Dashboard:
         self._structure: object = None
 
     @property
-    def is_shown(self) -> bool:
-        """Whether there is any panel."""
-        return bool(self.graphs or self.meters or self.sliders)
-
-    @property
     def state(self) -> tuple[object, ...]:
         """The state that panels are built from, but for the samples."""
         panels = self.graphs, self.meters, self.sliders

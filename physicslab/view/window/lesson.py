@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from physicslab.diagnostics.figures import Figures
 from physicslab.ecs.quantity_text import Expression, InvalidText
 from physicslab.files.checks import SceneError
 from physicslab.files.replace import reason_of
@@ -279,11 +278,6 @@ class OpenLesson:
             self.runs.keep(trial.run, trial.live.figures, trial.case)
             self.number += 1
         return not self.running
-
-    def figures(self, run: Run, case: Case = AS_IT_IS) -> Figures | None:
-        """Return the figures of a run that was made, ``None`` before that."""
-        trial = self.made(run, case)
-        return None if trial is None else trial.live.figures
 
     @property
     def state(self) -> tuple[object, ...]:

@@ -90,11 +90,11 @@ class Sketch:
         tip, left, right = self._at(end), self._at(neck + side), self._at(neck - side)
         self._paper.add_triangle_filled(tip, left, right, packed(colour))
 
-    def polygon(self, corners: Sequence[Place], fill: Colour, rim: Colour, width: float = 2.0) -> None:
+    def polygon(self, corners: Sequence[Place], fill: Colour, rim: Colour) -> None:
         """Draw a convex outline that is filled."""
         places: Any = [self._at(corner) for corner in corners]
         self._paper.add_convex_poly_filled(places, packed(fill))
-        self._paper.add_polyline(places, packed(rim), width, imgui.ImDrawFlags_.closed)
+        self._paper.add_polyline(places, packed(rim), 2.0, imgui.ImDrawFlags_.closed)
 
     def disc(self, middle: Place, radius: float, fill: Colour, rim: Colour, width: float = 2.0) -> None:
         """Draw a disc."""

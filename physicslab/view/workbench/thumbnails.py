@@ -1,7 +1,7 @@
 """Small pictures of scenes, at a moment that shows what they are about; made a little in each frame."""
 
 import time
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
 import pygame
@@ -62,7 +62,6 @@ class _Running:
     source: Source
     world: World
     moment: float
-    pictures: dict[tuple[int, int], pygame.Surface] = field(default_factory=dict)
 
 
 def tags_of(world: World) -> tuple[str, ...]:
