@@ -12,6 +12,7 @@ from physicslab.ecs.config import SimulationConfig, WindowConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.prefabs import box, circle
 from physicslab.view.window.hand import Hand
+from physicslab.view.window.placing import way_within
 from physicslab.world import World
 
 
@@ -185,6 +186,15 @@ def tower(contacts: str) -> tuple[World, list[int]]:
     boxes = [box(world, (x, y), width=0.5, height=0.5) for x, y in ((-0.26, 0.25), (0.26, 0.25), (0.0, 0.75))]
     world.run(seconds=0.5)
     return world, boxes
+
+
+def test_what_is_too_large_for_the_walls_is_held_in_their_middle_and_stays_there() -> None:
+    world = empty_world(bounds=(-3.0, 0.0, 3.0, 9.0))
+    beam = box(world, (1.0, 3.0), width=7.0, height=1.0)
+    world.synchronise()
+    for way in (Vector2(0.5, 0.0), Vector2(-9.0, 2.0)):
+        assert tuple(way_within(world, beam, way)) == pytest.approx((-1.0, way.y))
+    assert tuple(way_within(world, beam, Vector2(-1.0, 7.0))) == pytest.approx((-1.0, 5.5))
 
 
 @pytest.mark.parametrize("contacts", ["soft", "rigid"])

@@ -74,12 +74,14 @@ def way_within(world: World, entity: int, way: Vector2) -> Vector2:
 
 
 def _way_inside(world: World, shapes: Outlines) -> Vector2:
-    """Return the way [m] from beyond the walls of the world to within them."""
+    """Return the way [m] from beyond the walls of the world to within them; to the middle if too large."""
     bounds = world.physics.bounds
     if bounds is None or not len(shapes.place):
         return Vector2()
     low, high = (shapes.place - shapes.reach).min(axis=0), (shapes.place + shapes.reach).max(axis=0)
-    way = np.maximum(np.array(bounds[:2]) - low, 0.0) - np.maximum(high - np.array(bounds[2:]), 0.0)
+    below, above = np.array(bounds[:2]) - low, high - np.array(bounds[2:])
+    within = np.maximum(below, 0.0) - np.maximum(above, 0.0)
+    way = np.where(below + above > 0.0, 0.5 * (below - above), within)
     return Vector2(*way.tolist())
 
 
