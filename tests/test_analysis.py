@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from physicslab import SceneError, World, circle, ensemble, load_scene
 from physicslab.cli import main
-from physicslab.components import Spring, Transform
+from physicslab.components import Name, Spring, Transform
 from physicslab.ensembles import fit, sensitivity, sobol_indices
 
 VX, VY, G = "ball.Velocity.linear.x", "ball.Velocity.linear.y", "physics.gravity.y"
@@ -147,10 +147,13 @@ def test_a_fit_finds_the_fields_of_which_data_come_and_how_sure_they_are(tmp_pat
 
 
 @pytest.mark.peers
-def test_a_fit_reads_what_a_recorded_run_has_saved(tmp_path: Path) -> None:
-    path = tmp_path / "run.csv"
-    oscillator().record(2.0, every=0.1).save(path)
-    assert fit(oscillator(), {STIFFNESS: 7.0}, path).values[STIFFNESS] == pytest.approx(8.0, rel=1e-9)
+@pytest.mark.parametrize("name", ["ball", "ball [2]"])
+def test_a_fit_reads_what_a_recorded_run_has_saved(name: str, tmp_path: Path) -> None:
+    path, recorded, world = tmp_path / "run.csv", oscillator(), oscillator()
+    for one in (recorded, world):
+        one.add(one.entity("ball"), Name(name))
+    recorded.record(2.0, every=0.1).save(path)
+    assert fit(world, {STIFFNESS: 7.0}, path).values[STIFFNESS] == pytest.approx(8.0, rel=1e-9)
 
 
 @pytest.mark.peers

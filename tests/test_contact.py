@@ -123,6 +123,7 @@ def test_bounds_touch_with_an_inward_normal() -> None:
     assert wall is not None and floor is not None
     assert (wall.normal, floor.normal, len(floor.points)) == (Vector2(-1, 0), Vector2(0, 1), 2)
     assert (wall.depth, floor.depth) == pytest.approx((0.1, 0.05))
+    assert contact_between(world, ball, ball) is None and contact_between(world, ball, crate) is None
 
 
 angles = st.floats(-math.pi, math.pi)

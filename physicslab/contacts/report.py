@@ -92,7 +92,7 @@ def contacts_of(state: State, entity: int) -> tuple[Contact, ...]:
 
 def contact_between(state: State, a: int, b: int) -> Contact | None:
     """Return the contact of two entities, as A and B in the order given, or ``None``."""
-    seen = next((one for one in contacts_of(state, a) if b in (one.a, one.b)), None)
+    seen = next((one for one in contacts_of(state, a) if {one.a, one.b} == {a, b}), None)
     if seen is None or seen.a == a:
         return seen
     # From the other side, normal and tangent are reversed, and so are the impulses on B: the numbers stay.

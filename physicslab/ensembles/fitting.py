@@ -274,7 +274,9 @@ def _read(path: Path) -> dict[str, list[float]]:
 
 def _quantity(path: Path, heading: str) -> str:
     """Return the quantity of a column, without the unit that ``Run.save`` writes behind it."""
-    name, _, unit = heading.strip().removeprefix("'").partition(" [")
+    name, unit = heading.strip().removeprefix("'"), ""
+    if name.endswith("]"):
+        name, _, unit = name.rpartition(" [")
     try:
         usual = "s" if name == "time" else unit_of(name)
     except KeyError:  # what is no quantity is refused later, with the names that there are
