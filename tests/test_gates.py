@@ -314,6 +314,25 @@ def test_what_bounces_is_timed_up_to_the_impact_and_from_it_on(height: float, dt
     assert [one.direction for one in gates.crossings] == [-1, -1, -1, 1, 1, 1]
 
 
+def test_the_earlier_impact_of_another_in_the_same_step_does_not_change_a_crossing() -> None:
+    world = World(*standard_systems(), simulation=SimulationConfig(dt=1.0 / 25.0))
+    box(world, (0.0, -0.5), width=9.0, height=1.0, static=True, restitution=0.8, friction=0.0)
+    falls = {circle(world, (x, 0.25 + h), radius=0.25, restitution=0.8, friction=0.0): h
+             for x, h in ((-2.0, 3.75), (0.0, 3.77), (2.0, 3.85))}  # fmt: skip
+    circle(world, (4.0, 90.0), radius=0.25)  # far from the gate
+    world.spawn(Gate((-4.0, 0.26), (4.0, 0.26)))
+    world.run(seconds=1.0)
+    gates = world.schedule.find(GateSystem)
+    assert gates is not None and gates.count == 6
+    for body, h in falls.items():
+        down, up = math.sqrt(2.0 * 9.81 * (h - 0.01)), 0.8 * math.sqrt(2.0 * 9.81 * h)
+        late = math.sqrt(up**2 - 2.0 * 9.81 * 0.01)
+        own = [one for one in gates.crossings if one.body == body]
+        expected = [down / 9.81, math.sqrt(2.0 * h / 9.81) + (up - late) / 9.81]
+        assert [one.time for one in own] == pytest.approx(expected, abs=1e-12)
+        assert [one.speed for one in own] == pytest.approx([down, late], rel=1e-9)
+
+
 def test_a_gate_that_moves_with_a_body_is_crossed_by_what_stands_still() -> None:
     gate = GateSystem()
     world = World(IntegrateSystem(), gate)

@@ -95,6 +95,9 @@ def test_a_part_of_a_vector_is_set_and_the_other_stays() -> None:
     why = "'1 kg' is in kg; this is in m/s; must be a finite number m/s"
     line = f': {BALL}Velocity.linear.x = "1 kg": {why}'
     assert refusal(world, "ball.Velocity.linear.x=1 kg") == line
+    must = "unknown field; must be one of linear, angular"
+    assert refusal(world, "ball.Velocity.x=3") == f': {BALL}Velocity.x = "3": {must}'
+    assert refusal(world, "ball.x=3") == ' "ball.x=3": must be ID.Component.field=VALUE'
 
 
 def test_the_walls_of_the_world_are_set_as_in_a_file() -> None:

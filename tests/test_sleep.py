@@ -11,7 +11,7 @@ from desk import bits
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from physicslab.components import Drag, Held, Mass, Material, Shape, Spring, Transform, Velocity
+from physicslab.components import Drag, Held, Mass, Material, Rod, Shape, Spring, Transform, Velocity
 from physicslab.contacts.islands import export_rests, wake
 from physicslab.contacts.memory import export_contacts
 from physicslab.contacts.report import contact_between, list_contacts
@@ -719,3 +719,23 @@ def test_gravity_pulls_and_contacts_hold_what_sleeps(idle: bool) -> None:
         )
         assert account.momentum["numerical"].magnitude < 1e-11
     assert {0, 3} <= {*counts}, "they sleep, and wake"
+
+
+@pytest.mark.parametrize("idle", [False, True])
+@pytest.mark.parametrize("speed", [0.0, 1.0])
+def test_joints_hold_what_hangs_and_sleeps(idle: bool, speed: float) -> None:
+    world = World(simulation=SimulationConfig(sleeping=True, contacts="soft"))
+    box(world, (0.0, -0.5), width=9.0, height=1.0, static=True, friction=0.0 if speed else 0.5)
+    slider = box(world, (0.0, 0.25), width=0.5, height=0.5, mass=2.0, velocity=(speed, 0.0))
+    bob = circle(world, (-2.0, 2.0), radius=0.2, mass=1.5)
+    world.spawn(Rod(anchor_a=(-2.0, 4.0), b=bob))
+    if idle:
+        world.install(Idle())
+    for _ in range(8):
+        world.run(seconds=0.15)
+        account = measure_account(world)
+        assert account.momentum["joints"].y == pytest.approx(1.5 * 9.81 * world.time, rel=1e-9)
+        assert account.angular_momentum["joints"] == pytest.approx(-3.0 * 9.81 * world.time, rel=1e-9)
+        assert account.momentum["contact"].y == pytest.approx(2.0 * 9.81 * world.time, rel=1e-6)
+        assert account.momentum["numerical"].magnitude < 1e-11
+    assert sleepers(world) == ({bob} if speed else {slider, bob})

@@ -7,7 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Mass, Material, Transform, Velocity
+from physicslab.contacts.arguments import joints_in
 from physicslab.kernels.accounts import CONTACT
+from physicslab.kernels.joints.blocks import Joints
 from physicslab.kernels.sleep import edits, islands
 from physicslab.kernels.solver import work
 from physicslab.state.state import State
@@ -124,12 +126,14 @@ def _book_rest(state: State, falling: _Marks) -> None:
 
 
 def book_sleep(state: State, asleep: _Marks, h: float) -> None:
-    """Book that gravity pulls bodies (rows,) that sleep for ``h`` seconds, and contacts hold them."""
-    physics, bodies = state.physics, state.bodies
+    """Book that gravity pulls bodies (rows,) that sleep for ``h`` seconds, and what holds them."""
+    physics, bodies, acted = state.physics, state.bodies, state.contacts.impulse_dt
     if physics.gravity_mode == "linear":
+        joints = Joints(*joints_in(state))
         work.book_held(
             state.table(Transform)["position"], state.table(Mass)["mass"], bodies.inverse_mass,
             np.where(asleep, 0.0, bodies.inverse_mass), physics.gravity.x, physics.gravity.y, h,
+            joints.nodes, joints.body, joints.gradient, joints.impulse, h / (acted or _impulse_dt(state)),
             state.account.sums,
         )  # fmt: skip
 

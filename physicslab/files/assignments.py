@@ -23,7 +23,10 @@ from physicslab.files.writer import write_scene
 from physicslab.world import World
 
 _WORDS = {"true": True, "false": False}
-_PART = re.compile(r"(?P<whole>[^=]+)\.(?P<part>[xyz])\s*=(?P<value>.*)", re.DOTALL)
+_PART = re.compile(
+    rf"(?P<whole>(?:{'|'.join(SECTIONS)}|[^=]+\.[^=.]+)\.[^=.]+)\.(?P<part>[xyz])\s*=(?P<value>.*)", re.DOTALL
+)
+"""A part of a vector: of one of an entity's components, or of the laws."""
 
 
 def assign(world: World, texts: Sequence[str]) -> None:

@@ -139,12 +139,19 @@ class GateSystem(System):
             return
         followed = self._followed(state)
         ends = ends_of_steps(state.samples, state, followed, state.time, state.time + h, h)
-        begins, spans, motion = split_at_impacts(
-            state.contacts.impacts_since(self._logged), state.entity_index.entities[followed],
-            np.append(state.time, ends.times[:-1]), ends.spans,
-            np.concatenate((self._before[None], ends.motion)),
-        )  # fmt: skip
-        moments = self._moments(state, motion)
+        motion = np.concatenate((self._before[None], ends.motion))
+        moments, impacts = self._moments(state, motion), state.contacts.impacts_since(self._logged)
+        begins, spans = np.append(state.time, ends.times[:-1]), ends.spans
+        if len(impacts):
+            close = np.append(moments.is_close(spans), np.ones(2 * len(self._gates), np.bool_))
+            starts, entities = begins, state.entity_index.entities[followed]
+            begins, spans, path = split_at_impacts(
+                impacts, entities[close], starts, spans, motion[:, close]
+            )  # fmt: skip
+            # Bodies far from all gates cross none: they are as at the beginning of the step.
+            motion = motion[np.append(np.searchsorted(starts, begins, side="right") - 1, -1)]
+            motion[:, close] = path
+            moments = self._moments(state, motion)
         distance, width, side = moments.distance, moments.width, moments.sides(self._side)
         through = (side[1:] != side[:-1]) & (side[:-1] != 0)
         on_line = (np.abs(distance[1:]) <= width[1:]) & ((distance[1:] > 0.0) != (distance[:-1] > 0.0))

@@ -62,6 +62,17 @@ class Moments:
         part -= unit[..., 1:] * (vectors[..., None, :, 0] - origins[..., :1])
         return part
 
+    def is_close(self, spans: _Numbers) -> NDArray[np.bool_]:
+        """Whether bodies come so close to the line of a gate that they may cross it within a step (n,).
+
+        ``spans`` is how long each step is [s], an array (t - 1,).
+        """
+        own, gates = self.body_velocity, (self.start_velocity, self.end_velocity)
+        speed = np.abs(own).sum(axis=2).max(axis=0) + sum(np.abs(v).max(initial=0.0) for v in gates)
+        reach = 2.0 * float(spans.max()) * speed + self.width.max(initial=0.0)
+        close: NDArray[np.bool_] = (np.abs(self.distance) <= reach).any(axis=(0, 1))
+        return close
+
     def sides(self, known: NDArray[np.int8]) -> NDArray[np.int8]:
         """Return on which sides of gates bodies are (t, g, n); on a gate itself, where they were before.
 

@@ -16,6 +16,13 @@ _EVEN = 1.0 / 6.0
 """How far from the middle of the step, as a share of it, the corner then is: where a force that hardly
 changes gives the velocity, the two straight lines meet in the middle."""
 
+_MOTION = (
+    ("center_{}x", "center_{}y", "angle_{}"),
+    ("before_{}x", "before_{}y", "before_w{}"),
+    ("after_{}x", "after_{}y", "after_w{}"),
+)
+"""Where an impact has a body, and its motion before it and after: the names of fields of IMPACT."""
+
 
 @dataclass(frozen=True, slots=True)
 class StepPath:
@@ -110,35 +117,53 @@ def split_at_impacts(
     begins, spans, motion : float64 arrays
         Likewise; between the end of a step and the beginning of the next at an impact is one of no length.
     """
-    every, known = np.arange(len(entities)), set[int]()
+    step = np.searchsorted(begins, impacts["time"], side="right") - 1
+    inside = (step >= 0) & (begins[step] < impacts["time"]) & (impacts["time"] <= (begins + spans)[step])
     struck = np.isin(impacts["entity_a"], entities) | np.isin(impacts["entity_b"], entities)
-    for impact in impacts[struck]:
-        time, step = float(impact["time"]), int(np.searchsorted(begins, impact["time"], side="right")) - 1
-        if step < 0 or time > begins[step] + spans[step]:
-            continue
-        early = time - begins[step]
-        if early > 0.0:
-            known.clear()
-            (first, last), span = motion[step : step + 2], spans[step]
-            path = StepPath.between(first[:, :3], last[:, :3], first[:, 3:], last[:, 3:], span)
-            share = np.full(len(every), early / span)
-            there = np.hstack((path.at(every, share), path.velocity(every, share)))
-            motion = np.insert(motion, step + 1, (there, there), axis=0)
-            spans = np.concatenate((spans[:step], (early, 0.0, span - early), spans[step + 1 :]))
-            begins = np.insert(begins, step + 1, (time, time))
-            step += 2
-        elif not step or spans[step - 1] > 0.0:
-            continue  # it ended the step before
-        for body in "ab":
-            entity = int(impact[f"entity_{body}"])
-            own = entities == entity
-            place = [impact[name] for name in (f"center_{body}x", f"center_{body}y", f"angle_{body}")]
-            before, after = (
-                [impact[f"{moment}_{part}"] for part in (f"{body}x", f"{body}y", f"w{body}")]
-                for moment in ("before", "after")
-            )
-            motion[step - 1 : step + 1, own, :3], motion[step, own, 3:] = place, after
-            if entity not in known:  # else it was struck twice at this moment
-                motion[step - 1, own, 3:] = before
-                known.add(entity)
-    return begins, spans, motion
+    impacts = impacts[inside & struck]
+    if not len(impacts):
+        return begins, spans, motion
+    times, place = np.unique(impacts["time"], return_inverse=True)
+    step, ends = np.searchsorted(begins, times, side="right") - 1, np.arange(len(motion))
+    ends += np.searchsorted(step, ends)  # instants: the ends of steps, and between them the impacts
+    hits = np.arange(len(times)) + step + 1
+    when, known = np.zeros(len(ends) + len(hits)), np.zeros((len(ends) + len(hits), len(entities)), np.bool_)
+    when[ends], when[hits] = np.append(begins, begins[-1] + spans[-1]), times
+    before = np.zeros((len(when), *motion.shape[1:]))
+    before[ends], known[ends] = motion, True
+    after = before.copy()
+    event, body = np.nonzero(_of_both(impacts, "entity_{}")[..., 0].reshape(-1, 1) == entities)
+    instant = hits[np.repeat(place, 2)[event]]
+    there, early, late = (_of_both(impacts, *names).reshape(-1, 3)[event] for names in _MOTION)
+    before[instant[::-1], body[::-1], 3:] = early[::-1]  # of several at one moment the first
+    after[instant, body, 3:] = late
+    before[instant, body, :3] = after[instant, body, :3] = there
+    known[instant, body] = True
+    _fill(when, before, after, known)
+    twice = np.ones(len(when), np.int64)
+    twice[hits] = 2
+    lengths, uncut = np.diff(when), np.diff(ends) == 1
+    lengths[ends[:-1][uncut]] = spans[uncut]
+    last = np.cumsum(twice) - 1
+    parts, whole = np.zeros(last[-1]), np.repeat(before, twice, axis=0)
+    parts[last[:-1]], whole[last] = lengths, after
+    return np.repeat(when, twice)[:-1], parts, whole
+
+
+def _of_both(impacts: NDArray[Any], *names: str) -> NDArray[Any]:
+    """Return what impacts (n,) have of both bodies by these names, an array (n, 2, names)."""
+    return np.stack(
+        [np.stack([impacts[name.format(body)] for name in names], axis=1) for body in "ab"], axis=1
+    )
+
+
+def _fill(when: _Numbers, before: _Numbers, after: _Numbers, known: NDArray[np.bool_]) -> None:
+    """Put motion (t, k, 6) at instants (t,) [s] where it is not known (t, k): that of a path between."""
+    number, (instant, body) = np.arange(len(when))[:, None], np.nonzero(~known)
+    early = np.maximum.accumulate(np.where(known, number, 0), axis=0)[instant, body]
+    late = np.minimum.accumulate(np.where(known, number, len(when))[::-1], axis=0)[::-1][instant, body]
+    first, last, span = after[early, body], before[late, body], when[late] - when[early]
+    path = StepPath.between(first[:, :3], last[:, :3], first[:, 3:], last[:, 3:], span)
+    every, share = np.arange(len(instant)), (when[instant] - when[early]) / span
+    there = np.hstack((path.at(every, share), path.velocity(every, share)))
+    before[instant, body] = after[instant, body] = there

@@ -245,7 +245,8 @@ def _advance(
                 if sleepers.number > 0:
                     book_held(
                         position, gravity.mass, gravity.inverse_mass, inverse.mass, gravity.gx, gravity.gy,
-                        span, account,
+                        span, joints.nodes, joints.body, joints.gradient, joints.impulse,
+                        span / (impulse_dt if impulse_dt > 0.0 else h), account,
                     )  # fmt: skip
                 if damped:
                     book_damping(

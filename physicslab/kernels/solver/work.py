@@ -20,6 +20,7 @@ from physicslab.kernels.accounts import (
     FRICTION,
     GRAVITY,
     HAND,
+    JOINTS,
     book,
 )
 from physicslab.kernels.arguments import Acting, Contacts, Inverse, Motion, Near
@@ -32,6 +33,8 @@ from physicslab.kernels.constraint.pair import (
     point_state,
     velocity_of,
 )
+from physicslab.kernels.joints import blocks as B
+from physicslab.kernels.joints.blocks import Tables
 from physicslab.kernels.motion import damped
 from physicslab.kernels.near_counts import DISC_BLOCKS, WIDE_COUNT
 from physicslab.kernels.solver.impact_log import Pose, book_outside
@@ -324,18 +327,37 @@ def book_gravity(
 @kernel
 def book_held(
     position: Vectors, mass: Numbers, inverse_mass: Numbers, awake_inverse_mass: Numbers, gx: float,
-    gy: float, h: float, account: Vectors,
+    gy: float, h: float, nodes: Tables, body: Rows, gradient: Vectors, impulse: Numbers, share: float,
+    account: Vectors,
 ) -> None:  # fmt: skip
-    """Book that gravity pulls bodies that sleep for ``h`` seconds, and that contacts hold them."""
-    px, py, spin = 0.0, 0.0, 0.0
+    """Book that gravity pulls bodies that sleep for ``h`` seconds, and joints and contacts hold them.
+
+    The fixed ends of joints give a ``share`` of their last impulses, and contacts what is left.
+    """
+    px, py, spin, x, y, turn = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for i in range(len(mass)):
         if inverse_mass[i] > 0.0 and awake_inverse_mass[i] == 0.0:
             jx, jy = h * mass[i] * gx, h * mass[i] * gy
             px += jx
             py += jy
             spin += position[i, 0] * jy - position[i, 1] * jx
+    for k in range(len(nodes) - 1):
+        row = nodes[k, B.ROW]
+        first, second = share * impulse[row], 0.0
+        if nodes[k, B.WIDTH] == 2:
+            second = share * impulse[row + 1]
+        for e in range(nodes[k, B.ENDS], nodes[k + 1, B.ENDS]):
+            i = body[e]
+            if inverse_mass[i] > 0.0 and awake_inverse_mass[i] == 0.0:
+                jx = first * gradient[e, 0] + second * gradient[e, 3]
+                jy = first * gradient[e, 1] + second * gradient[e, 4]
+                x += jx
+                y += jy
+                turn += first * gradient[e, 2] + second * gradient[e, 5]
+                turn += position[i, 0] * jy - position[i, 1] * jx
     book(account[GRAVITY], 0, 0.0, px, py, spin)
-    book(account[CONTACT], 0, 0.0, -px, -py, -spin)
+    book(account[JOINTS], 0, 0.0, x, y, turn)
+    book(account[CONTACT], 0, 0.0, -(px + x), -(py + y), -(spin + turn))
 
 
 @kernel

@@ -11,7 +11,7 @@ ROUNDING = 1e-12
 _LEAST_ERROR, _PLAIN = 1e-12, 3
 """Share of a value from which its error is written, and powers of ten that need no exponent."""
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-_OF_TEN = re.compile(r"(?<=\d)e(-?)\+?0*(\d+)(?= [A-Za-z%°])")
+_OF_TEN = re.compile(r"(?<![\w.,])(\d[\d.,]*)e(-?)\+?0*(\d+)(?= (?:[^\W\d_]|[%°]))")
 """The power of ten of a number that has a unit."""
 
 
@@ -49,8 +49,10 @@ def with_powers(text: str) -> str:
 
     >>> with_powers("deepest overlap 1.1e-05 m, 2e+07 J"), with_powers("simulation.dt = 1e-05")
     ('deepest overlap 1.1·10⁻⁵ m, 2·10⁷ J', 'simulation.dt = 1e-05')
+    >>> with_powers("box2e3 has 3e-07 µm, 1e5 Ω")
+    'box2e3 has 3·10⁻⁷ µm, 1·10⁵ Ω'
     """
-    return _OF_TEN.sub(lambda found: f"·10{''.join(found.groups()).translate(_RAISED)}", text)
+    return _OF_TEN.sub(lambda found: f"{found[1]}·10{(found[2] + found[3]).translate(_RAISED)}", text)
 
 
 def without_turns(degrees: float) -> float:

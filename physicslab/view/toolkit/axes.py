@@ -13,7 +13,8 @@ _AXES = 3
 _ROUNDING = 1e-9
 """Share of a step by which a tick may lie beyond an end."""
 _DECIMALS = 6
-"""Decimals, and figures before the point, up to which a number is written without a power of ten."""
+"""Decimals, and figures before the point, up to which a number is written without a power of ten, and beyond
+which it is where that is not longer."""
 _APART = (3.5, 1.6)
 """Least distance between ticks across and along, in heights of the text."""
 
@@ -53,13 +54,17 @@ def _ticks(low: float, high: float, most: int) -> Iterator[tuple[float, str]]:
     (['-0.2', '0.0', '0.2', '0.4'], ['-12.5000', '-12.4995', '-12.4990'])
     >>> [text for _, text in _ticks(0.0, 1.6e7, 4)], [text for _, text in _ticks(0.0, 9e3, 3)]
     (['0', '5e6', '10e6', '15e6'], ['0', '5000'])
+    >>> [text for _, text in _ticks(2e6, 2e6 + 1.0, 2)], [text for _, text in _ticks(999990.0, 1e6, 2)]
+    (['2000000.0', '2000000.5', '2000001.0'], ['999990', '999995', '1000000'])
     """
     if not (math.isfinite(high - low) and high > low):
         return
     step = rounded_up((high - low) / most)
     decimals = -math.floor(math.log10(step * (1.0 + _ROUNDING)))
-    plain = decimals <= _DECIMALS and max(-low, high) < 10.0**_DECIMALS
-    scale, behind, power = (1.0, max(decimals, 0), "") if plain else (10.0**decimals, 0, f"e{-decimals}")
+    largest, behind, power = max(-low, high), max(decimals, 0), f"e{-decimals}"
+    is_plain = decimals <= _DECIMALS and largest < 10.0**_DECIMALS
+    is_plain = is_plain or len(f"{largest:.{behind}f}") <= len(f"{largest * 10.0**decimals:.0f}{power}")
+    scale, behind, power = (1.0, behind, "") if is_plain else (10.0**decimals, 0, power)
     for k in range(math.ceil(low / step - _ROUNDING), math.floor(high / step + _ROUNDING) + 1):
         yield k * step, f"{k * step * scale:z.{behind}f}{power if k else ''}"
 
