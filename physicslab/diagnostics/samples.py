@@ -41,7 +41,7 @@ def quantity_of(name: str, ids: Iterable[str]) -> tuple[str | None, str]:
     Raises
     ------
     InvalidText
-        If there is none such; with the names that there are.
+        If the world has no such quantity; with the names that it has.
     """
     known = [*ids, "world"]
     entity = max((one for one in known if name.startswith(f"{one}.")), key=len, default="")

@@ -159,7 +159,7 @@ def read_path(
     Raises
     ------
     SceneError
-        If there is none such; ``form`` is that of a value, for the message.
+        If the world has no such entity, component or field; ``form`` is that of a value, for the message.
     """
     splits = list(_splits(text))
     section = next((one for one in splits if one[1] in SECTIONS and not one[0]), None)

@@ -99,7 +99,7 @@ class StepPath:
 def split_at_impacts(
     impacts: NDArray[Any], entities: NDArray[np.int64], begins: _Numbers, spans: _Numbers, motion: _Numbers
 ) -> tuple[_Numbers, _Numbers, _Numbers]:
-    """Return steps that end where something is struck, so that no path within one has a corner.
+    """Return steps that end at impacts, so that no path within one has a corner.
 
     Parameters
     ----------
