@@ -280,7 +280,7 @@ def test_beside_contacts_what_is_wrong_between_them_is_an_error(method: str, kin
                                          "fx, fy = 1.001 * share * dx, 1.001 * share * dy"),),
         ("damped", "kick"): ((full._change, "speed[i] += share", "speed[i] += 1.001 * share"),),
         ("damped", "drift"): ((full._drift, "+= span * speed[i]", "+= 1.001 * span * speed[i]"),),
-        ("damped", "force"): ((full._evaluate, "pull = tension", "pull = 1.001 * tension"),),
+        ("damped", "force"): ((full._evaluate, "tension = take(", "tension = 1.001 * take("),),
         ("dop853", "kick"): (KICK,),
         ("dop853", "drift"): (DRIFTS[dop853.dop853],),
         ("dop853", "force"): ((packed_forces._pull, "force[a] += fx\n    force[a + 1] += fy",

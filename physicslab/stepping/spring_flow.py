@@ -11,10 +11,11 @@ from physicslab.ecs.vector import Vector2
 from physicslab.integrators.spring_splitting import DRIFTS, KICKS
 from physicslab.kernels import Plain
 from physicslab.kernels.arguments import Springs
-from physicslab.kernels.ode.spring_flow import HEAD, KNOWN, LONGEST, MOST_TERMS, UNIFORM, WEIGHT
+from physicslab.kernels.ode.spring_flow import HEAD, KNOWN, LONGEST, UNIFORM, WEIGHT
 from physicslab.kernels.wide_layout import WIDE
 from physicslab.state.packed import StateLayout, spring_ends, turned_anchors
 from physicslab.state.state import State
+from physicslab.stepping.kick_series import reach_of_terms, series_terms
 from physicslab.stepping.spring_groups import SpringGroup, drag_per_mass
 from physicslab.systems.drag import DragSystem
 from physicslab.systems.gravity import GravitySystem
@@ -24,7 +25,7 @@ from physicslab.systems.system import ForceSystem
 _SHORTEST = 0.5
 """Share of its rest length below which a spring is not followed: across it, the pull changes faster."""
 _SERIES = 1e-10
-"""Share of a velocity that is left out of the series of a kick, which dampers and drag make one of."""
+"""Share of a velocity that is left out of the series of the kicks of a flow, of dampers and drag."""
 
 
 def why_no_spring_flow(state: State, forces: Sequence[ForceSystem]) -> str | None:
@@ -67,6 +68,18 @@ def _in_blocks(a: NDArray[np.int64], b: NDArray[np.int64], moving: int) -> NDArr
     return np.array([[*block, *[-1] * (WIDE - len(block))] for block in blocks], np.int64).ravel()
 
 
+def _in_order(
+    a: NDArray[np.int64], b: NDArray[np.int64], moving: NDArray[np.int64]
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return the springs (n,) between rows in blocks, and the rows that move in the order of these."""
+    rows, ends = np.unique(np.stack((a, b)), return_inverse=True)
+    moves = np.isin(rows, moving)
+    place = np.where(moves, np.cumsum(moves) - 1, len(rows))[ends.reshape(2, -1)]
+    order = _in_blocks(place[0], place[1], len(moving))
+    taken, first = np.unique(place[:, order[order >= 0]].T.ravel(), return_index=True)
+    return order, rows[moves][taken[np.argsort(first[taken < len(moving)])]]
+
+
 class SpringFlow:
     """The springs and bodies of a world as :func:`flow_forces` takes them (kernels/ode/damped_flow.py).
 
@@ -95,15 +108,18 @@ class SpringFlow:
         self._forces, bodies = tuple(forces), state.bodies
         springs = np.stack(spring_ends(state))
         springs = springs[:, (layout.place[springs[1:]] >= 0).all(axis=0)]
-        plain = state.table(Spring)["damping"][springs[0]] == 0.0
-        rows, a, b = springs[:, np.argsort(plain, kind="stable")]  # those with dampers first
+        step = 0.5 * state.simulation.dt / state.simulation.substeps / group.steps
+        kicks = step * np.append(KICKS, KICKS[-1] + KICKS[0])
+        terms, terms_of_drag = series_terms(state, springs, kicks, _SERIES / group.steps)
+        fastest_first = np.argsort(-terms.max(axis=0), kind="stable")
+        terms, (rows, a, b) = terms[:, fastest_first], springs[:, fastest_first]
         held = np.isin(layout.moving, np.concatenate((a, b)))
-        moving, alone = layout.moving[held], layout.moving[~held]
-        self._moving, inverse, drag = moving, bodies.inverse_mass[moving], state.table(Drag)
+        alone, drag = layout.moving[~held], state.table(Drag)
+        order, moving = _in_order(a, b, layout.moving[held])
+        self._moving, inverse = moving, bodies.inverse_mass[moving]
         (ends_a, ends_b), (p, spare) = self._ends(state, rows, a, b)
         turns = self._turns(state, rows, a, b)
         turned = bodies.inverse_inertia[moving] * turns
-        order = _in_blocks(ends_a, ends_b, len(moving))
         used = order >= 0
         slots = [np.where(used, end[order], spare) for end in (ends_a, ends_b)]
         ends = np.concatenate((np.flatnonzero(inverse == 0.0), np.arange(len(moving), spare)))
@@ -126,28 +142,23 @@ class SpringFlow:
         full = turns or damped > 0 or len(slowed) > 0
         if full:
             parts += [turned, np.zeros(-(-len(moving) // WIDE) * WIDE), np.tile((1.0, 0.0), p + WIDE)]
-            parts += [np.zeros(5 * p), spring["damping"]]
-            parts += [np.zeros((3 + MOST_TERMS) * len(order)), *_arms(state, rows, order, slots, len(moving))]
-            parts += [np.zeros(4 * len(order))]
+            parts += [np.zeros(5 * p), np.sqrt(spring["damping"]), np.zeros(4 * len(order))]
+            parts += [*_arms(state, rows, order, slots, len(moving)), np.zeros(4 * len(order) + 6)]
         gain = np.zeros((2, len(by_drag)))
         gain[:, : len(slowed)] = drag_per_mass(state, moving)[slowed] / inverse[slowed], inverse[slowed]
-        parts += [gain.ravel(), np.zeros(2 * MOST_TERMS * len(by_drag))]
+        parts += [gain.ravel(), np.zeros(4 * len(by_drag))]
         by_mass = bodies.inverse_mass[alone]
         parts += [drag_per_mass(state, alone), drag["quadratic"][alone] * by_mass, _reciprocal(by_mass)]
         sizes = len(moving), p, len(order), len(DRIFTS), full, turns
-        step = 0.5 * state.simulation.dt / state.simulation.substeps / group.steps
         dampers = [2 * np.flatnonzero(used & np.isin(end, ends)) + at_b for at_b, end in enumerate(slots)]
-        whole = [
-            np.array((*sizes, len(alone), len(ends), len(by_drag), damped)),
-            moving,
-            *slots,
-            ends,
-            *(dampers if damped else ()),
-        ]
-        whole += [by_drag, alone]
+        whole = [np.array((*sizes, len(alone), len(ends), len(by_drag), damped)), moving, *slots, ends]
+        if full:
+            of_slots, of_drag = np.where(used, terms[:, order], 0), terms_of_drag[:, moving[slowed]]
+            whole += [reach_of_terms(of_slots, np.stack(slots), of_drag, by_drag, len(moving)).ravel()]
+        whole += [*(dampers if damped else ()), by_drag, alone]
         self.changes_with_speed = bool(drag["quadratic"][alone].any())
         self.arrays: Plain[Springs] = np.concatenate(parts), np.concatenate(whole).astype(np.int64)
-        self.arrays[0][LONGEST : LONGEST + 3] = step, group.decay, _SERIES
+        self.arrays[0][LONGEST] = step
         self._places = p
         self._physics: object = None
 

@@ -4,7 +4,7 @@ A few fast springs then make no others finer, and only those too fast for any st
 """
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,8 +20,8 @@ from physicslab.systems.system import ForceSystem
 _RESOLVED = 0.26
 """omega h of the steps of spring_splitting. Its phase is then right to 4e-10, and what it adds to the error
 of contacts within four substeps is 1e-5 of that (docs/decisions/springs-beside-contacts.md)."""
-_DAMPED = 1.0
-"""The same for rates of decay, whose exponential function a kick has."""
+_DAMPED = 2.0
+"""Most that a rate of decay, whose exponential function a kick has, may be in a step."""
 _MULTIPLIED = 8
 """How often x is multiplied where bounds on rates are made closer: for nets of all masses within 4 %."""
 _BEYOND = MAX_STEPS
@@ -45,6 +45,42 @@ class SpringGroup(NamedTuple):
     steps: int
     rate: float
     decay: float
+
+
+class Net(NamedTuple):
+    """How n springs pull at rows, and are stretched by them. Rows have numbers of the middle and of turns.
+
+    Attributes
+    ----------
+    ends : int array (4 n,)
+        The number at A and at B of each spring, and that of the turn of A and of B.
+    arm : float array (4 n,)
+        How far each end goes by it: 1, and for turns the distance from the middle [m].
+    gain : float array (2 rows,)
+        Inverse masses [1/kg], and inverse inertias [1/(kg m^2)].
+    """
+
+    ends: NDArray[np.int64]
+    arm: NDArray[np.float64]
+    gain: NDArray[np.float64]
+
+    @classmethod
+    def of(cls, state: State, springs: NDArray[np.int64]) -> Self:
+        """Return that of ``springs`` (3, n): rows of these, and of their ends."""
+        (which, a, b), bodies, spring = springs, state.bodies, state.table(Spring)
+        arms = [np.hypot(*spring[anchor][which].T) for anchor in ("anchor_a", "anchor_b")]
+        rows = len(bodies.inverse_mass)
+        ends, arm = np.concatenate((a, b, a + rows, b + rows)), np.concatenate((np.ones(2 * len(a)), *arms))
+        return cls(ends, arm, np.concatenate((bodies.inverse_mass, bodies.inverse_inertia)))
+
+    def stretched(self, moved: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return by how much springs (n,) are stretched at most by changes of rows (2 rows,)."""
+        stretch: NDArray[np.float64] = (self.arm * moved[self.ends]).reshape(4, -1).sum(axis=0)
+        return stretch
+
+    def pulled(self, pull: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the sums of pulls (n,) and of torques on rows (2 rows,)."""
+        return np.bincount(self.ends, self.arm * np.tile(pull, 4), len(self.gain))
 
 
 def drag_per_mass(state: State, rows: NDArray[np.int64]) -> NDArray[np.float64]:
@@ -82,7 +118,7 @@ def spring_groups(state: State, forces: Sequence[ForceSystem], rows: NDArray[np.
     sprung[of[np.isin(moving, np.concatenate((a, b)))]] = True
     swing, decay, rate = (np.where(sprung, rates, 0.0) for rates in (swing, decay, rate))
     steps = [
-        max(steps_needed(fast, half, _RESOLVED), steps_needed(slowed, half, _DAMPED))
+        max(steps_needed(fast, half, _RESOLVED), steps_of_decay(slowed, half))
         for fast, slowed in zip(swing.tolist(), decay.tolist(), strict=True)
     ]
     kinds: dict[int, list[int]] = {}
@@ -99,6 +135,16 @@ def spring_groups(state: State, forces: Sequence[ForceSystem], rows: NDArray[np.
     return groups
 
 
+def steps_of_decay(rate: float, h: float) -> int:
+    """Return into how many steps a time h [s] is divided for a rate of decay [1/s].
+
+    What comes to a stop within v / rate is off by 6e-5 (rate h)^4 of that: in n steps by no more than in one
+    where rate h is 1, if n^4 is (rate h)^3.
+    """
+    decay = rate * h
+    return steps_needed(max(decay**0.75, decay / _DAMPED), 1.0, 1.0)
+
+
 def _closer(
     state: State, name: str, set_of: NDArray[np.int64], largest: NDArray[np.float64]
 ) -> NDArray[np.float64]:
@@ -109,21 +155,17 @@ def _closer(
     eigenvalue is above the largest ratio of A x to x, for any x > 0 (Collatz, 1942); multiplied by A, x comes
     closer to where all ratios are the largest eigenvalue. Rows have two numbers: of the middle, and of turns.
     """
-    springs, a, b = spring_ends(state)
-    spring, bodies, rows = state.table(Spring), state.bodies, len(set_of)
-    strength = spring[name][springs]
+    springs, rows = np.stack(spring_ends(state)), len(set_of)
+    strength, net = state.table(Spring)[name][springs[0]], Net.of(state, springs)
     if not strength.any():
         return largest
-    ends = np.concatenate((a, b, a + rows, b + rows))
-    arms = [np.hypot(*spring[anchor][springs].T) for anchor in ("anchor_a", "anchor_b")]
-    arm = np.concatenate((np.ones(2 * len(springs)), *arms))
-    gain = np.where(set_of < len(largest), np.stack((bodies.inverse_mass, bodies.inverse_inertia)), 0.0)
-    sets, stretch, after = np.concatenate((set_of, set_of)), np.ones(len(springs)), np.zeros(2 * rows)
+    gain = np.where(np.tile(set_of, 2) < len(largest), net.gain, 0.0)
+    sets, stretch, after = np.concatenate((set_of, set_of)), np.ones(len(strength)), np.zeros(2 * rows)
     with np.errstate(all="ignore"):  # an overflow is an unlimited rate: the bound stays as it is
-        shrink = gain.ravel() / np.append(largest, 1.0)[sets]
+        shrink = gain / np.append(largest, 1.0)[sets]
         for _ in range(_MULTIPLIED):
-            before, after = after, shrink * np.bincount(ends, arm * np.tile(strength * stretch, 4), 2 * rows)
-            stretch = (arm * after[ends]).reshape(4, -1).sum(axis=0)
+            before, after = after, shrink * net.pulled(strength * stretch)
+            stretch = net.stretched(after)
         ratios = np.where(before > 0.0, after / before, np.where(after > 0.0, np.inf, 0.0))
         return np.fmin(largest, largest * _largest(ratios, sets, len(largest) + 1)[:-1])
 

@@ -3,12 +3,14 @@
 It is the splitting of :mod:`physicslab.kernels.ode.spring_flow`, whose kicks are here the motion of
 velocities while all places stay: it is linear in them, and followed by its Taylor series. The splitting is
 symmetric, so that it is of order 4 for these kicks as well. Springs are taken eight at a time, as there.
+Those that need most terms come first: a term is one of the first slots and of the first bodies.
 
 Dampers take the integral of their power over the same series, and so does drag by the speed of what springs
 hold. Bodies that only drag and gravity act on are followed each by itself
 (:mod:`physicslab.kernels.ode.drag_flow`).
 """
 
+import math
 from typing import NamedTuple
 
 from physicslab.kernels import Numbers, Rows, Vectors, always_inlined, inlined, inlined_by_numba
@@ -17,12 +19,12 @@ from physicslab.kernels.arguments import Motion, Springs
 from physicslab.kernels.directions import face
 from physicslab.kernels.float64x8 import (
     Wide,
+    add_vectors,
     choose,
     everywhere,
     mask_bits,
     put,
     put_numbers,
-    put_vectors,
     root,
     sum_of,
     take,
@@ -31,29 +33,32 @@ from physicslab.kernels.float64x8 import (
 )
 from physicslab.kernels.ode import spring_flow as S
 from physicslab.kernels.ode.drag_flow import fall_in_drag
-from physicslab.kernels.ode.held_drag import Slowed, book_drag, slow, slow_alone, slowed_in
+from physicslab.kernels.ode.held_drag import Slowed, slow, slow_alone, slowed_in
 from physicslab.kernels.ode.spring_flow import Links, Places
 from physicslab.kernels.wide_layout import WIDE
 
 type Arms = tuple[Wide, Wide, Wide, Wide]
-_AT_ONCE = 32 * WIDE
-"""Slots whose series are integrated together: they stay in the nearest cache."""
 
 
 class Full(NamedTuple):
     """Properties of dampers and arms beside :class:`Places` and :class:`Links`.
 
-    ``damped`` is how many slots, from the first on, may have dampers. The rest is of p places, m bodies and n
-    springs. ``spin_gain`` (m,) is the inverse inertia, 0 where no spring may turn a body; ``angle`` [rad] of
-    m bodies and of more, so that they are a multiple of eight, ``facing`` the cosines and sines of as many
-    and of p; ``spin`` (p,) [rad/s]. ``rate`` (p, 2) and ``spin_rate`` (p,) are the last derivatives of
-    velocities that were taken, ``twist`` (p,) torques. ``damping`` (n,); ``along_x``, ``along_y`` (n,)
-    directions, ``tension`` (n,) without dampers; ``opening`` (MOST_TERMS * n,) the derivatives of how fast
-    springs lengthen; ``arm_a``, ``arm_b`` (2 n,) in the frames of bodies, x first, ``turned_a``, ``turned_b``
-    in that of the world. What is behind ``damping`` is noted only of springs beside dampers, but for arms.
+    ``damped`` is how many slots, from the first on, may have dampers; ``reach`` (3 MOST_TERMS k,) tells, of
+    each term of the series of k kicks, of how many slots, bodies and slowed places it is, from the first on.
+    The rest is of p places, m bodies and n springs. ``spin_gain`` (m,) is the inverse inertia, 0 where no
+    spring may turn a body; ``angle`` [rad] of m bodies and of more, so that they are a multiple of eight,
+    ``facing`` the cosines and sines of as many and of p; ``spin`` (p,) [rad/s]. ``rate`` (p, 2) and
+    ``spin_rate`` (p,) are the last derivatives of velocities that were taken, ``twist`` (p,) torques.
+    ``strength`` (n,) are the roots of the dampings; ``along_x``, ``along_y`` (n,) directions times these,
+    ``first`` and ``opening`` (n,) how fast springs lengthen times these, and its last derivative.
+    ``arm_a``, ``arm_b`` (2 n,) are in the frames of bodies, x first, ``turned_a``, ``turned_b`` in that of
+    the world. From ``along_x`` to ``opening`` nothing is noted but of dampers. ``sums`` (6,) are of the last
+    derivative: its products with the first, with the one before and with itself times the resistance of
+    dampers and drag, and the force [N] (x, y) and torque of drag by it.
     """
 
     damped: int
+    reach: Rows
     spin_gain: Numbers
     angle: Numbers
     facing: Vectors
@@ -61,26 +66,28 @@ class Full(NamedTuple):
     spin: Numbers
     spin_rate: Numbers
     twist: Numbers
-    damping: Numbers
+    strength: Numbers
     along_x: Numbers
     along_y: Numbers
-    tension: Numbers
+    first: Numbers
     opening: Numbers
     arm_a: Numbers
     arm_b: Numbers
     turned_a: Numbers
     turned_b: Numbers
+    sums: Numbers
 
 
 @inlined_by_numba
-def _full(numbers: Numbers, at: int, m: int, p: int, n: int, damped: int) -> Full:
+def _full(numbers: Numbers, at: int, m: int, p: int, n: int, damped: int, reach: Rows) -> Full:
     """Return the arrays that begin at a place of the numbers."""
     eights, facing = -(-m // WIDE) * WIDE, at + m + -(-m // WIDE) * WIDE
     rate = facing + 2 * (p + WIDE)
     spin, links = rate + 2 * p, rate + 5 * p
-    arms = links + (4 + S.MOST_TERMS) * n
+    arms = links + 5 * n
     return Full(
         damped,
+        reach,
         numbers[at : at + m],
         numbers[at + m : at + m + eights],
         numbers[facing:rate].reshape(p + WIDE, 2),
@@ -97,6 +104,7 @@ def _full(numbers: Numbers, at: int, m: int, p: int, n: int, damped: int) -> Ful
         numbers[arms + 2 * n : arms + 4 * n],
         numbers[arms + 4 * n : arms + 6 * n],
         numbers[arms + 6 * n : arms + 8 * n],
+        numbers[arms + 8 * n : arms + 8 * n + 6],
     )
 
 
@@ -142,10 +150,8 @@ def _pull_ends(
     places: Places, links: Links, full: Full, turns: bool, arms: Arms, at: int, fx: Wide, fy: Wide
 ) -> None:
     """Add the pull of eight springs to both ends."""
-    pull_x, pull_y = take_vectors(places.pull, links.a, at)
-    put_vectors(places.pull, links.a, at, pull_x + fx, pull_y + fy)
-    pull_x, pull_y = take_vectors(places.pull, links.b, at)
-    put_vectors(places.pull, links.b, at, pull_x - fx, pull_y - fy)
+    add_vectors(places.pull, links.a, at, fx, fy)
+    add_vectors(places.pull, links.b, at, -fx, -fy)
     if turns:
         ax, ay, bx, by = arms
         put_numbers(full.twist, links.a, at, take_numbers(full.twist, links.a, at) + (ax * fy - ay * fx))
@@ -153,32 +159,35 @@ def _pull_ends(
 
 
 @inlined
-def _clear(places: Places, full: Full, turns: bool) -> None:
-    S.clear_pull(places)
+def _clear(places: Places, full: Full, turns: bool, bodies: int, ends: Rows) -> None:
+    """Set the pull on the first bodies, and on ends that springs do not move, to zero."""
+    pull = places.pull.reshape(places.pull.size)
+    for i in range(2 * bodies):
+        pull[i] = 0.0
+    for k in range(len(ends)):
+        places.pull[ends[k], 0] = places.pull[ends[k], 1] = 0.0
     if turns:
-        for i in range(len(full.twist)):
+        for i in range(bodies):
             full.twist[i] = 0.0
 
 
 @inlined
-def _evaluate(places: Places, links: Links, full: Full, slowed: Slowed, turns: bool, followed: float) -> bool:
+def _evaluate(
+    places: Places, links: Links, full: Full, slowed: Slowed, turns: bool, followed: float, ends: Rows
+) -> bool:
     """Compute the pull of springs, and if there are dampers of these and of drag.
 
     Returns whether each spring is long enough.
     """
-    short, n = 0, len(links.a)
-    _clear(places, full, turns)
+    short, n, taken = 0, len(links.a), everywhere(0.0)
+    _clear(places, full, turns, len(places.moving), ends)
     for at in range(0, n, WIDE):
         dx, dy, arms = _apart(places, links, full, turns, at)
         length = root(dx * dx + dy * dy)
         share = choose(length > 0.0, 1.0 / length, 0.0)
         nx, ny = dx * share, dy * share
         tension = take(links.stiffness, at) * (length - take(links.rest, at))
-        pull = tension
-        if full.damped > 0:
-            put(full.along_x, at, nx)
-            put(full.along_y, at, ny)
-            put(full.tension, at, tension)
+        fx, fy = tension * nx, tension * ny
         if at < full.damped:
             if turns:
                 put(full.turned_a, at, arms[0])
@@ -186,73 +195,75 @@ def _evaluate(places: Places, links: Links, full: Full, slowed: Slowed, turns: b
                 put(full.turned_b, at, arms[2])
                 put(full.turned_b, n + at, arms[3])
             ux, uy = _opening(places.speed, full.spin, links, turns, arms, at)
+            strength = take(full.strength, at)
+            nx, ny = strength * nx, strength * ny
             opening = nx * ux + ny * uy
+            put(full.along_x, at, nx)
+            put(full.along_y, at, ny)
+            put(full.first, at, opening)
             put(full.opening, at, opening)
-            pull = pull + take(full.damping, at) * opening
-        _pull_ends(places, links, full, turns, arms, at, pull * nx, pull * ny)
+            taken = taken + opening * opening
+            fx, fy = fx + opening * nx, fy + opening * ny
+        _pull_ends(places, links, full, turns, arms, at, fx, fy)
         short |= mask_bits(length < followed * take(links.shortest, at))
     if full.damped > 0:
-        slow(places, slowed, places.speed, 0)
+        full.sums[0] = sum_of(taken)
+        slow(places, slowed, places.speed, full.sums, True, len(slowed.places))
     return short == 0
 
 
 @inlined
-def _resist(places: Places, links: Links, full: Full, slowed: Slowed, term: int, turns: bool) -> None:
-    """Compute the pull of dampers and drag for ``full.rate``, the derivative of velocities of an order."""
-    n = len(links.a)
-    _clear(places, full, turns)
-    for at in range(0, full.damped, WIDE):
-        arms = (
-            take(full.turned_a, at), take(full.turned_a, n + at), take(full.turned_b, at),
-            take(full.turned_b, n + at),
-        )  # fmt: skip
-        ux, uy = _opening(full.rate, full.spin_rate, links, turns, arms, at)
+def _resist(
+    places: Places, links: Links, full: Full, slowed: Slowed, reach: int, turns: bool, ends: Rows
+) -> None:
+    """Compute the pull of dampers and drag for ``full.rate``, the derivative of velocities of an order.
+
+    ``reach`` is where in :attr:`Full.reach` it stands how far that goes.
+    """
+    n, by_first, by_last, by_itself = len(links.a), everywhere(0.0), everywhere(0.0), everywhere(0.0)
+    _clear(places, full, turns, full.reach[reach + S.MOST_TERMS], ends)
+    for at in range(0, full.reach[reach], WIDE):
+        ax = ay = bx = by = everywhere(0.0)
+        if turns:
+            ax, ay = take(full.turned_a, at), take(full.turned_a, n + at)
+            bx, by = take(full.turned_b, at), take(full.turned_b, n + at)
+        ux, uy = _opening(full.rate, full.spin_rate, links, turns, (ax, ay, bx, by), at)
         nx, ny = take(full.along_x, at), take(full.along_y, at)
         opening = nx * ux + ny * uy
-        put(full.opening, term * n + at, opening)
-        pull = take(full.damping, at) * opening
-        _pull_ends(places, links, full, turns, arms, at, pull * nx, pull * ny)
-    slow(places, slowed, full.rate, term)
+        by_first = by_first + opening * take(full.first, at)
+        by_last = by_last + opening * take(full.opening, at)
+        by_itself = by_itself + opening * opening
+        put(full.opening, at, opening)
+        _pull_ends(places, links, full, turns, (ax, ay, bx, by), at, opening * nx, opening * ny)
+    full.sums[0], full.sums[1], full.sums[2] = sum_of(by_first), sum_of(by_last), sum_of(by_itself)
+    slow(places, slowed, full.rate, full.sums, False, full.reach[reach + 2 * S.MOST_TERMS])
 
 
 @inlined
-def _change(places: Places, full: Full, first: bool, share: float, turns: bool) -> None:
-    """Change velocities by a derivative of them, which is computed from the pull.
+def _change(places: Places, full: Full, first: bool, share: float, turns: bool, bodies: int) -> None:
+    """Change velocities of the first bodies by a derivative of them, which is computed from the pull.
 
     The first is of the velocities themselves, and gravity has part in it. ``share`` is that of the derivative
     in the change.
     """
     speed, rate = places.speed.reshape(places.speed.size), full.rate.reshape(full.rate.size)
     pull, gain, gravity = places.pull.reshape(places.pull.size), places.gain, places.gravity
-    for i in range(len(gain)):
+    for i in range(2 * bodies):
         rate[i] = pull[i] * gain[i] + gravity[i] if first else pull[i] * gain[i]
-    for i in range(len(gain)):
+    for i in range(2 * bodies):
         speed[i] += share * rate[i]
     if turns:
-        for i in range(len(full.spin_gain)):
+        for i in range(bodies):
             full.spin_rate[i] = full.twist[i] * full.spin_gain[i]
             full.spin[i] += share * full.spin_rate[i]
 
 
-@inlined
-def _dissipated(resistance: Numbers, series: Numbers, number: int, span: float, terms: int) -> float:
-    """Return the integral of c r^2 over a kick [J], summed over the first of n resistances c.
-
-    r is the ``series`` (MOST_TERMS * n,) of how a damper opens, or of a coordinate of a velocity.
-    """
-    n, taken = len(resistance), everywhere(0.0)
-    for begin in range(0, number, _AT_ONCE):
-        first = 1.0  # span^j / j!
-        for j in range(terms):
-            second = first
-            for k in range(j, terms):
-                share = first * second * span / (j + k + 1) * (1.0 if j == k else 2.0)
-                second *= span / (k + 1)
-                for at in range(begin, min(begin + _AT_ONCE, number), WIDE):
-                    product = take(series, j * n + at) * take(series, k * n + at)
-                    taken = taken + share * take(resistance, at) * product
-            first *= span / (j + 1)
-    return sum_of(taken)
+@always_inlined
+def _arm(full: Full, rows: Rows, arm: Numbers, slot: int) -> tuple[float, float]:
+    """Return where one end is on a turned body."""
+    c, s = full.facing[rows[slot], 0], full.facing[rows[slot], 1]
+    x, y = arm[slot], arm[len(rows) + slot]
+    return c * x - s * y, s * x + c * y
 
 
 @inlined
@@ -264,51 +275,104 @@ def _book_held(places: Places, links: Links, full: Full, span: float, held: Rows
     """
     for k in range(len(held)):
         slot, at_b = held[k] // 2, held[k] % 2 == 1
-        impulse = -span * full.tension[slot] if at_b else span * full.tension[slot]
-        i = links.b[slot] if at_b else links.a[slot]
-        x, y = impulse * full.along_x[slot], impulse * full.along_y[slot]
+        a, b = links.a[slot], links.b[slot]
+        (ax, ay), (bx, by) = _arm(full, links.a, full.arm_a, slot), _arm(full, links.b, full.arm_b, slot)
+        dx = places.place[b, 0] + bx - places.place[a, 0] - ax
+        dy = places.place[b, 1] + by - places.place[a, 1] - ay
+        length = math.sqrt(dx * dx + dy * dy)
+        share = links.stiffness[slot] * (length - links.rest[slot]) / length if length > 0.0 else 0.0
+        impulse, i = (-span * share, b) if at_b else (span * share, a)
+        x, y = impulse * dx, impulse * dy
         turn = places.place[i, 0] * y - places.place[i, 1] * x
-        for account, share in ((S.BY_SPRINGS, -1.0), (S.BY_DAMPERS, 1.0)):
-            given[account] += share * x
-            given[account + 1] += share * y
-            given[account + 2] += share * turn
+        for account, part in ((S.BY_SPRINGS, -1.0), (S.BY_DAMPERS, 1.0)):
+            given[account] += part * x
+            given[account + 1] += part * y
+            given[account + 2] += part * turn
 
 
 @inlined
 def _book_ends(
-    places: Places, full: Full, share: float, ends: Rows, to: int, turns: bool, given: Numbers
+    places: Places, full: Full, share: float, ends: Rows, to: int, turns: bool, bodies: int, given: Numbers
 ) -> None:
     """Book what a share of the pull gives by ends that nothing moves, and by bodies that nothing turns."""
     S.book_ends(places, ends, share, to, given)
     if turns:
-        for i in range(len(full.spin_gain)):
+        for i in range(bodies):
             if full.spin_gain[i] == 0.0:
                 given[S.BY_SPRINGS + 2] -= share * full.twist[i]
                 given[S.BY_HAND] -= share * full.twist[i] * full.spin[i]
 
 
+@always_inlined
+def _terms(reach: Rows, at: int) -> int:
+    """Return how many terms a series has: at least one."""
+    terms = 1
+    while terms < S.MOST_TERMS and reach[at + terms] > 0:
+        terms += 1
+    return terms
+
+
+@always_inlined
+def _of_products(power: int, terms: int, span: float) -> float:
+    """Return the integral of t^power over a kick, times the sum of 1 / (j! k!) over j + k = power.
+
+    Both are from 1 to less than ``terms``. It is the share in the work of dampers of the product of two
+    derivatives of velocities, which is the same for all j and k, as a damper resists both ends alike.
+    """
+    first, found = 1.0, 0.0  # 1 / j!
+    for j in range(1, min(power, terms)):
+        first /= j
+        if power - j < terms:
+            second = first
+            for k in range(1, power - j + 1):
+                second /= k
+            found += second
+    return found * span ** (power + 1) / (power + 1)
+
+
 @inlined
 def _kick(
-    places: Places, links: Links, full: Full, slowed: Slowed, span: float, terms: int, turns: bool,
+    places: Places, links: Links, full: Full, slowed: Slowed, span: float, number: int, turns: bool,
     ends: Rows, held: Rows, given: Numbers,
 ) -> None:  # fmt: skip
-    """Change velocities by what acts for ``span`` seconds at these places, of which the pull is computed."""
-    to, share = S.BY_DAMPERS if len(held) > 0 else S.BY_SPRINGS, span
+    """Change velocities by what acts for ``span`` seconds at these places, of which the pull is computed.
+
+    ``number`` is which kick of a step it is, that where two steps meet after all of these. Dampers take the
+    integral of c r^2, r being the series of how fast they open: of products of its derivatives with the
+    first and the last one, as all of the same order in sum are the same.
+    """
+    to, share, bodies = S.BY_DAMPERS if len(held) > 0 else S.BY_SPRINGS, span, len(places.moving)
+    slots, sums = 3 * S.MOST_TERMS * number, full.sums
+    drags = slots + 2 * S.MOST_TERMS
+    of_drag = _terms(full.reach, drags)
+    terms = max(of_drag, _terms(full.reach, slots))
     if full.damped == 0 and len(slowed.places) > 0:
-        slow_alone(places, slowed, span, terms, given)
-    _book_ends(places, full, share, ends, to, turns, given)
-    _change(places, full, True, share, turns)
+        slow_alone(places, slowed, span, of_drag, given)
+    _book_ends(places, full, share, ends, to, turns, bodies, given)
+    _change(places, full, True, share, turns, bodies)
     if full.damped > 0:
+        taken = span * sums[0]
+        _book_drag(sums, share, given)
         for term in range(1, terms):
             share *= span / (term + 1)
-            _resist(places, links, full, slowed, term, turns)
-            _book_ends(places, full, share, ends, to, turns, given)
-            _change(places, full, False, share, turns)
+            bodies = full.reach[slots + S.MOST_TERMS + term]
+            _resist(places, links, full, slowed, slots + term, turns, ends)
+            _book_ends(places, full, share, ends, to, turns, bodies, given)
+            _change(places, full, False, share, turns, bodies)
+            _book_drag(sums, share, given)
+            taken += 2.0 * share * sums[0] + _of_products(2 * term, terms, span) * sums[2]
+            if term > 1:
+                taken += _of_products(2 * term - 1, terms, span) * sums[1]
+        given[S.DISSIPATED] += taken
         _book_held(places, links, full, span, held, given)
-        given[S.DISSIPATED] += _dissipated(full.damping, full.opening, full.damped, span, terms)
-        for rates in (slowed.rates_x, slowed.rates_y):
-            given[S.DISSIPATED] += _dissipated(slowed.drag, rates, len(slowed.drag), span, terms)
-        book_drag(places, slowed, span, terms, given)
+
+
+@always_inlined
+def _book_drag(sums: Numbers, share: float, given: Numbers) -> None:
+    """Book the impulse that drag by a derivative of velocities has a share in."""
+    given[S.BY_DAMPERS] -= share * sums[3]
+    given[S.BY_DAMPERS + 1] -= share * sums[4]
+    given[S.BY_DAMPERS + 2] -= share * sums[5]
 
 
 @inlined
@@ -336,22 +400,9 @@ def _follows(places: Places, links: Links, full: Full, turns: bool, h: float) ->
 
 
 @inlined
-def _terms(phase: float, series: float) -> int:
-    """Return how many terms of its series a kick takes whose length times the fastest decay is ``phase``."""
-    terms, rest = 1, 0.5 * phase * phase
-    if phase > 0.0:  # with one, the work of dampers would be of the order of the step
-        terms, rest = 2, rest * phase / 3.0
-    while rest > series and terms < S.MOST_TERMS:
-        terms += 1
-        rest *= phase / (terms + 1)
-    return terms
-
-
-@inlined
 def _advance(
     places: Places, links: Links, full: Full, slowed: Slowed, drifts: Numbers, kicks: Numbers, h: float,
-    steps: int, followed: float, decay: float, series: float, turns: bool, ends: Rows, held: Rows,
-    given: Numbers,
+    steps: int, followed: float, turns: bool, ends: Rows, held: Rows, given: Numbers,
 ) -> int:  # fmt: skip
     """Advance what was gathered, as :func:`flow_forces` does: where steps meet, two kicks are one."""
     if not _follows(places, links, full, turns, h):
@@ -359,22 +410,20 @@ def _advance(
     stages, evaluations = len(drifts), 0
     if places.known[0] == 0.0 or full.damped > 0:
         evaluations = 1
-        if not _evaluate(places, links, full, slowed, turns, followed):
+        if not _evaluate(places, links, full, slowed, turns, followed, ends):
             return S.TURNS_FAST
     torque, rate = S.torque_of_gravity(places)
     for number in range(steps * stages + 1):
         stage, last = number % stages, number == steps * stages
-        kick = kicks[stage] * h if number == 0 else kicks[stages] * h
-        if number > 0 and not last:
-            kick = kicks[stage] * h if stage > 0 else kick + kicks[0] * h
+        which, kick = stages if last else stage, kicks[stages if last else stage] * h
         if stage == 0 and number > 0 and not last:
+            which, kick = stages + 1, kicks[stages] * h + kick
             torque, rate = S.book_gravity(places, h, torque, rate, given)
-        terms = _terms(abs(kick) * decay, series)
-        _kick(places, links, full, slowed, kick, terms, turns, ends, held, given)
+        _kick(places, links, full, slowed, kick, which, turns, ends, held, given)
         if not last:
             _drift(places, full, drifts[stage] * h, turns)
             evaluations += 1
-            if not _evaluate(places, links, full, slowed, turns, followed):
+            if not _evaluate(places, links, full, slowed, turns, followed, ends):
                 return S.TURNS_FAST
     S.book_gravity(places, h, torque, rate, given)
     return evaluations
@@ -412,9 +461,10 @@ def flow_forces(motion: Motion, springs: Springs, span: float, account: Vectors)
         made = S.flow_springs(motion, springs, span, account)
     else:
         places, links, ends, given, drifts, kicks, at = S.named(springs)
-        full, slowed = _full(numbers, at, m, p, n, whole[9]), slowed_in(springs)
-        dragged = last - alone - whole[8]
-        held = whole[S.SIZES + m + 2 * n + whole[7] : dragged]
+        dragged, reach = last - alone - whole[8], S.SIZES + m + 2 * n + whole[7]
+        behind = reach + 3 * S.MOST_TERMS * (len(kicks) + 1)
+        held = whole[behind:dragged]
+        full, slowed = _full(numbers, at, m, p, n, whole[9], whole[reach:behind]), slowed_in(springs)
         steps, finer, made = S.steps_of(springs, span), 1, S.TURNS_FAST
         while made < 0 and finer <= S.FINEST:
             S.gather(places, motion)
@@ -424,7 +474,7 @@ def flow_forces(motion: Motion, springs: Springs, span: float, account: Vectors)
                 given[i] = 0.0
             made = _advance(
                 places, links, full, slowed, drifts, kicks, span / (finer * steps), finer * steps,
-                S.still_followed(finer), numbers[S.DECAY], numbers[S.SERIES], turns, ends, held, given,
+                S.still_followed(finer), turns, ends, held, given,
             )  # fmt: skip
             finer *= 2
         places.known[0] = 1.0 if made >= 0 else 0.0

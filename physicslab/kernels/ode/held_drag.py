@@ -4,8 +4,8 @@ from typing import NamedTuple
 
 from physicslab.kernels import Numbers, Rows, Vectors, inlined, inlined_by_numba
 from physicslab.kernels.arguments import Springs
-from physicslab.kernels.float64x8 import everywhere, put, put_vectors, sum_of, take, take_vectors
-from physicslab.kernels.ode.spring_flow import BY_DAMPERS, DISSIPATED, MOST_TERMS, UNIFORM, Places
+from physicslab.kernels.float64x8 import add_vectors, everywhere, put, put_vectors, sum_of, take, take_vectors
+from physicslab.kernels.ode.spring_flow import BY_DAMPERS, DISSIPATED, UNIFORM, Places
 from physicslab.kernels.wide_layout import WIDE
 
 
@@ -13,15 +13,15 @@ class Slowed(NamedTuple):
     """Which places of :class:`Places` drag slows (d,), by how much [kg/s], and their inverse masses [1/kg].
 
     They are a multiple of eight: no drag acts on the last, at the place of no spring. Then the velocities at
-    the start of a kick and their derivatives of each order, x and y (MOST_TERMS * d,), which only dampers
-    need, and the acceleration of gravity (2,) [m/s^2].
+    the start of a kick and their last derivatives, x and y (2 d,), which only dampers need, and the
+    acceleration of gravity (2,) [m/s^2].
     """
 
     places: Rows
     drag: Numbers
     gain: Numbers
-    rates_x: Numbers
-    rates_y: Numbers
+    first: Numbers
+    rates: Numbers
     gravity: Numbers
 
 
@@ -31,28 +31,46 @@ def slowed_in(springs: Springs) -> Slowed:
     numbers, whole = springs
     d, alone = whole[8], whole[6]
     last = len(numbers) - 3 * alone
-    rates = last - 2 * MOST_TERMS * d
+    rates = last - 4 * d
     return Slowed(
         whole[len(whole) - alone - d : len(whole) - alone],
         numbers[rates - 2 * d : rates - d],
         numbers[rates - d : rates],
-        numbers[rates : rates + MOST_TERMS * d],
-        numbers[rates + MOST_TERMS * d : last],
+        numbers[rates : rates + 2 * d],
+        numbers[rates + 2 * d : last],
         numbers[UNIFORM : UNIFORM + 2],
     )
 
 
 @inlined
-def slow(places: Places, slowed: Slowed, velocity: Vectors, term: int) -> None:
-    """Add drag by velocities, or by their derivative of an order, and note these."""
-    d = len(slowed.places)
-    for at in range(0, d, WIDE):
+def slow(places: Places, slowed: Slowed, velocity: Vectors, sums: Numbers, first: bool, number: int) -> None:
+    """Add drag at the first of places by velocities, or by a derivative of them, to the pull and to ``sums``.
+
+    The first of these are products of derivatives, as dampers have them
+    (:mod:`physicslab.kernels.ode.damped_flow`); then the force of drag and its torque about the origin.
+    """
+    d, by_first, by_last, by_itself = len(slowed.places), everywhere(0.0), everywhere(0.0), everywhere(0.0)
+    fx, fy, turned = everywhere(0.0), everywhere(0.0), everywhere(0.0)
+    for at in range(0, number, WIDE):
         x, y = take_vectors(velocity, slowed.places, at)
-        put(slowed.rates_x, term * d + at, x)
-        put(slowed.rates_y, term * d + at, y)
-        pull_x, pull_y = take_vectors(places.pull, slowed.places, at)
         drag = take(slowed.drag, at)
-        put_vectors(places.pull, slowed.places, at, pull_x - drag * x, pull_y - drag * y)
+        drag_x, drag_y = drag * x, drag * y
+        by_itself = by_itself + (drag_x * x + drag_y * y)
+        if first:
+            put(slowed.first, at, x)
+            put(slowed.first, d + at, y)
+        else:
+            by_first = by_first + (drag_x * take(slowed.first, at) + drag_y * take(slowed.first, d + at))
+            by_last = by_last + (drag_x * take(slowed.rates, at) + drag_y * take(slowed.rates, d + at))
+        put(slowed.rates, at, x)
+        put(slowed.rates, d + at, y)
+        add_vectors(places.pull, slowed.places, at, -drag_x, -drag_y)
+        place_x, place_y = take_vectors(places.place, slowed.places, at)
+        fx, fy, turned = fx + drag_x, fy + drag_y, turned + (place_x * drag_y - place_y * drag_x)
+    sums[0] += sum_of(by_itself) if first else sum_of(by_first)
+    sums[1] += sum_of(by_last)
+    sums[2] += sum_of(by_itself)
+    sums[3], sums[4], sums[5] = sum_of(fx), sum_of(fy), sum_of(turned)
 
 
 @inlined
@@ -85,23 +103,3 @@ def slow_alone(places: Places, slowed: Slowed, span: float, terms: int, given: N
     given[BY_DAMPERS] -= sum_of(px)
     given[BY_DAMPERS + 1] -= sum_of(py)
     given[BY_DAMPERS + 2] -= sum_of(turned)
-
-
-@inlined
-def book_drag(places: Places, slowed: Slowed, span: float, terms: int, given: Numbers) -> None:
-    """Book the impulses of drag in a kick: of each place the integral of its velocity, by the series."""
-    d = len(slowed.places)
-    px, py, turned = everywhere(0.0), everywhere(0.0), everywhere(0.0)
-    for at in range(0, d, WIDE):
-        x, y, share = everywhere(0.0), everywhere(0.0), span
-        for term in range(terms):
-            x = x + share * take(slowed.rates_x, term * d + at)
-            y = y + share * take(slowed.rates_y, term * d + at)
-            share *= span / (term + 2)
-        drag = take(slowed.drag, at)
-        x, y = -(drag * x), -(drag * y)
-        place_x, place_y = take_vectors(places.place, slowed.places, at)
-        px, py, turned = px + x, py + y, turned + (place_x * y - place_y * x)
-    given[BY_DAMPERS] += sum_of(px)
-    given[BY_DAMPERS + 1] += sum_of(py)
-    given[BY_DAMPERS + 2] += sum_of(turned)

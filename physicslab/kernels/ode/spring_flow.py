@@ -11,7 +11,7 @@ from typing import NamedTuple
 from physicslab.kernels import Numbers, Rows, Vectors, always_inlined, inlined, inlined_by_numba
 from physicslab.kernels.accounts import ENERGY, GRAVITY, HAND, SPRINGS, book
 from physicslab.kernels.arguments import Motion, Springs
-from physicslab.kernels.float64x8 import choose, mask_bits, put_vectors, root, take, take_vectors
+from physicslab.kernels.float64x8 import add_vectors, choose, mask_bits, root, take, take_vectors
 from physicslab.kernels.wide_layout import WIDE
 
 TURNS_FAST = -1
@@ -28,7 +28,7 @@ BY_SPRINGS, BY_GRAVITY, BY_HAND, DISSIPATED, BY_DAMPERS, GIVEN = 0, 3, 4, 5, 6, 
 """Where in what is given are the momentum (x, y) and the angular momentum that springs bring in [N s, N m s];
 the angular momentum of gravity [N m s]; the work of ends that are driven [J]; what dampers take [J]; the
 momenta that they bring in."""
-MOST_TERMS = 10
+MOST_TERMS = 12
 """Terms of the series of a kick for which there is room."""
 SIZES = 10
 """The whole numbers begin with: how many bodies move on springs, how many places there are, slots for
@@ -36,11 +36,11 @@ springs, drifts of the method; whether there are dampers or arms, and so more nu
 (:mod:`physicslab.kernels.ode.damped_flow`); arms; how many bodies are in drag alone; how many ends springs do
 not move; how many of the bodies on springs drag slows, made a multiple of eight; how many slots, from the
 first on, may have dampers. Then :attr:`Places.moving`, the springs' ends at A and B, and the ``ends`` that
-springs do not move; dampers at these; bodies on springs that drag slows; bodies in drag alone."""
-KNOWN, WEIGHT, _GIVEN, UNIFORM, LONGEST, DECAY, SERIES, HEAD = 0, 1, 3, 12, 14, 15, 16, 18
+springs do not move; how far terms reach, and dampers at these ends; bodies on springs that drag slows; bodies
+in drag alone."""
+KNOWN, WEIGHT, _GIVEN, UNIFORM, LONGEST, HEAD = 0, 1, 3, 12, 14, 16
 """The numbers begin with: whether the pull is known (1,), the weight of all that moves on springs (2,) [N],
-what is given (GIVEN,), gravity (2,) [m/s^2], the longest step of the method [s], the fastest rate of decay
-[1/s], the share of a velocity that is left out of the series of a kick. Then those of
+what is given (GIVEN,), gravity (2,) [m/s^2], the longest step of the method [s]. Then those of
 :class:`Places` and of :class:`Links` in order, drifts and kicks, and what dampers and drag need."""
 
 
@@ -138,10 +138,8 @@ def _pull(places: Places, links: Links, at: int, followed: float) -> int:
     share = take(links.stiffness, at) * (length - take(links.rest, at)) / length
     share = choose(length > 0.0, share, 0.0)
     fx, fy = share * dx, share * dy
-    pull_x, pull_y = take_vectors(places.pull, links.a, at)
-    put_vectors(places.pull, links.a, at, pull_x + fx, pull_y + fy)
-    pull_x, pull_y = take_vectors(places.pull, links.b, at)
-    put_vectors(places.pull, links.b, at, pull_x - fx, pull_y - fy)
+    add_vectors(places.pull, links.a, at, fx, fy)
+    add_vectors(places.pull, links.b, at, -fx, -fy)
     return mask_bits(length < followed * take(links.shortest, at))
 
 
