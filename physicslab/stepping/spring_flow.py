@@ -123,6 +123,8 @@ class SpringFlow:
         used = order >= 0
         slots = [np.where(used, end[order], spare) for end in (ends_a, ends_b)]
         ends = np.concatenate((np.flatnonzero(inverse == 0.0), np.arange(len(moving), spare)))
+        first = np.unique(np.stack(slots, axis=1), return_index=True)[1][ends] // 2
+        ends, first = ends[np.argsort(first)], np.sort(first)
         spring = {
             name: np.where(used, state.table(Spring)[name][rows[order]], 0.0)
             for name in ("rest_length", "stiffness", "damping")
@@ -154,7 +156,7 @@ class SpringFlow:
         whole = [np.array((*sizes, len(alone), len(ends), len(by_drag), damped)), moving, *slots, ends]
         if full:
             of_slots, of_drag = np.where(used, terms[:, order], 0), terms_of_drag[:, moving[slowed]]
-            whole += [reach_of_terms(of_slots, np.stack(slots), of_drag, by_drag, len(moving)).ravel()]
+            whole += [reach_of_terms(of_slots, np.stack(slots), of_drag, by_drag, len(moving), first).ravel()]
         whole += [*(dampers if damped else ()), by_drag, alone]
         self.changes_with_speed = bool(drag["quadratic"][alone].any())
         self.arrays: Plain[Springs] = np.concatenate(parts), np.concatenate(whole).astype(np.int64)

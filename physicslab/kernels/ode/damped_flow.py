@@ -43,8 +43,9 @@ type Arms = tuple[Wide, Wide, Wide, Wide]
 class Full(NamedTuple):
     """Properties of dampers and arms beside :class:`Places` and :class:`Links`.
 
-    ``damped`` is how many slots, from the first on, may have dampers; ``reach`` (3 MOST_TERMS k,) tells, of
-    each term of the series of k kicks, of how many slots, bodies and slowed places it is, from the first on.
+    ``damped`` is how many slots, from the first on, may have dampers; ``reach`` (4 MOST_TERMS k,) tells, of
+    each term of the series of k kicks, of how many slots, bodies, ends that springs do not move, and slowed
+    places it is, from the first on.
     The rest is of p places, m bodies and n springs. ``spin_gain`` (m,) is the inverse inertia, 0 where no
     spring may turn a body; ``angle`` [rad] of m bodies and of more, so that they are a multiple of eight,
     ``facing`` the cosines and sines of as many and of p; ``spin`` (p,) [rad/s]. ``rate`` (p, 2) and
@@ -159,12 +160,12 @@ def _pull_ends(
 
 
 @inlined
-def _clear(places: Places, full: Full, turns: bool, bodies: int, ends: Rows) -> None:
-    """Set the pull on the first bodies, and on ends that springs do not move, to zero."""
+def _clear(places: Places, full: Full, turns: bool, bodies: int, ends: Rows, number: int) -> None:
+    """Set the pull on the first bodies, and on the first ends that springs do not move, to zero."""
     pull = places.pull.reshape(places.pull.size)
     for i in range(2 * bodies):
         pull[i] = 0.0
-    for k in range(len(ends)):
+    for k in range(number):
         places.pull[ends[k], 0] = places.pull[ends[k], 1] = 0.0
     if turns:
         for i in range(bodies):
@@ -180,7 +181,7 @@ def _evaluate(
     Returns whether each spring is long enough.
     """
     short, n, taken = 0, len(links.a), everywhere(0.0)
-    _clear(places, full, turns, len(places.moving), ends)
+    _clear(places, full, turns, len(places.moving), ends, len(ends))
     for at in range(0, n, WIDE):
         dx, dy, arms = _apart(places, links, full, turns, at)
         length = root(dx * dx + dy * dy)
@@ -201,7 +202,6 @@ def _evaluate(
             put(full.along_x, at, nx)
             put(full.along_y, at, ny)
             put(full.first, at, opening)
-            put(full.opening, at, opening)
             taken = taken + opening * opening
             fx, fy = fx + opening * nx, fy + opening * ny
         _pull_ends(places, links, full, turns, arms, at, fx, fy)
@@ -221,7 +221,8 @@ def _resist(
     ``reach`` is where in :attr:`Full.reach` it stands how far that goes.
     """
     n, by_first, by_last, by_itself = len(links.a), everywhere(0.0), everywhere(0.0), everywhere(0.0)
-    _clear(places, full, turns, full.reach[reach + S.MOST_TERMS], ends)
+    bodies, number = full.reach[reach + S.MOST_TERMS], full.reach[reach + 2 * S.MOST_TERMS]
+    _clear(places, full, turns, bodies, ends, number)
     for at in range(0, full.reach[reach], WIDE):
         ax = ay = bx = by = everywhere(0.0)
         if turns:
@@ -236,7 +237,7 @@ def _resist(
         put(full.opening, at, opening)
         _pull_ends(places, links, full, turns, (ax, ay, bx, by), at, opening * nx, opening * ny)
     full.sums[0], full.sums[1], full.sums[2] = sum_of(by_first), sum_of(by_last), sum_of(by_itself)
-    slow(places, slowed, full.rate, full.sums, False, full.reach[reach + 2 * S.MOST_TERMS])
+    slow(places, slowed, full.rate, full.sums, False, full.reach[reach + 3 * S.MOST_TERMS])
 
 
 @inlined
@@ -249,9 +250,9 @@ def _change(places: Places, full: Full, first: bool, share: float, turns: bool, 
     speed, rate = places.speed.reshape(places.speed.size), full.rate.reshape(full.rate.size)
     pull, gain, gravity = places.pull.reshape(places.pull.size), places.gain, places.gravity
     for i in range(2 * bodies):
-        rate[i] = pull[i] * gain[i] + gravity[i] if first else pull[i] * gain[i]
-    for i in range(2 * bodies):
-        speed[i] += share * rate[i]
+        change = pull[i] * gain[i] + gravity[i] if first else pull[i] * gain[i]
+        rate[i] = change
+        speed[i] += share * change
     if turns:
         for i in range(bodies):
             full.spin_rate[i] = full.twist[i] * full.spin_gain[i]
@@ -292,10 +293,11 @@ def _book_held(places: Places, links: Links, full: Full, span: float, held: Rows
 
 @inlined
 def _book_ends(
-    places: Places, full: Full, share: float, ends: Rows, to: int, turns: bool, bodies: int, given: Numbers
-) -> None:
-    """Book what a share of the pull gives by ends that nothing moves, and by bodies that nothing turns."""
-    S.book_ends(places, ends, share, to, given)
+    places: Places, full: Full, share: float, ends: Rows, number: int, to: int, turns: bool, bodies: int,
+    given: Numbers,
+) -> None:  # fmt: skip
+    """Book what a share of the pull gives by the first ends that springs do not move or bodies not turn."""
+    S.book_ends(places, ends, number, share, to, given)
     if turns:
         for i in range(bodies):
             if full.spin_gain[i] == 0.0:
@@ -342,13 +344,13 @@ def _kick(
     first and the last one, as all of the same order in sum are the same.
     """
     to, share, bodies = S.BY_DAMPERS if len(held) > 0 else S.BY_SPRINGS, span, len(places.moving)
-    slots, sums = 3 * S.MOST_TERMS * number, full.sums
-    drags = slots + 2 * S.MOST_TERMS
+    slots, sums = 4 * S.MOST_TERMS * number, full.sums
+    drags = slots + 3 * S.MOST_TERMS
     of_drag = _terms(full.reach, drags)
     terms = max(of_drag, _terms(full.reach, slots))
     if full.damped == 0 and len(slowed.places) > 0:
         slow_alone(places, slowed, span, of_drag, given)
-    _book_ends(places, full, share, ends, to, turns, bodies, given)
+    _book_ends(places, full, share, ends, len(ends), to, turns, bodies, given)
     _change(places, full, True, share, turns, bodies)
     if full.damped > 0:
         taken = span * sums[0]
@@ -356,8 +358,9 @@ def _kick(
         for term in range(1, terms):
             share *= span / (term + 1)
             bodies = full.reach[slots + S.MOST_TERMS + term]
+            held_ends = full.reach[slots + 2 * S.MOST_TERMS + term]
             _resist(places, links, full, slowed, slots + term, turns, ends)
-            _book_ends(places, full, share, ends, to, turns, bodies, given)
+            _book_ends(places, full, share, ends, held_ends, to, turns, bodies, given)
             _change(places, full, False, share, turns, bodies)
             _book_drag(sums, share, given)
             taken += 2.0 * share * sums[0] + _of_products(2 * term, terms, span) * sums[2]
@@ -462,7 +465,7 @@ def flow_forces(motion: Motion, springs: Springs, span: float, account: Vectors)
     else:
         places, links, ends, given, drifts, kicks, at = S.named(springs)
         dragged, reach = last - alone - whole[8], S.SIZES + m + 2 * n + whole[7]
-        behind = reach + 3 * S.MOST_TERMS * (len(kicks) + 1)
+        behind = reach + 4 * S.MOST_TERMS * (len(kicks) + 1)
         held = whole[behind:dragged]
         full, slowed = _full(numbers, at, m, p, n, whole[9], whole[reach:behind]), slowed_in(springs)
         steps, finer, made = S.steps_of(springs, span), 1, S.TURNS_FAST

@@ -176,12 +176,12 @@ def _evaluate(places: Places, links: Links, followed: float) -> bool:
 
 
 @inlined
-def book_ends(places: Places, ends: Rows, kick: float, to: int, given: Numbers) -> None:
-    """Book what springs give in a kick by ends that they do not move: what acts on these, reversed.
+def book_ends(places: Places, ends: Rows, number: int, kick: float, to: int, given: Numbers) -> None:
+    """Book what springs give in a kick by the first ends that they do not move: what acts on these, reversed.
 
     ``to`` is where in what is given that belongs.
     """
-    for k in range(len(ends)):
+    for k in range(number):
         i = ends[k]
         x, y = kick * places.pull[i, 0], kick * places.pull[i, 1]
         given[to] -= x
@@ -237,14 +237,14 @@ def _advance(
     torque, rate = torque_of_gravity(places)
     for _ in range(steps):
         for stage in range(len(drifts)):
-            book_ends(places, ends, kicks[stage] * h, BY_SPRINGS, given)
+            book_ends(places, ends, len(ends), kicks[stage] * h, BY_SPRINGS, given)
             _kick_and_drift(places, kicks[stage] * h, drifts[stage] * h)
             evaluations += 1
             if not _evaluate(places, links, followed):
                 return TURNS_FAST
         speed, pull = places.speed.reshape(places.speed.size), places.pull.reshape(places.pull.size)
         kick = kicks[len(drifts)] * h
-        book_ends(places, ends, kick, BY_SPRINGS, given)
+        book_ends(places, ends, len(ends), kick, BY_SPRINGS, given)
         for i in range(len(places.gain)):
             speed[i] += kick * (pull[i] * places.gain[i] + places.gravity[i])
         torque, rate = book_gravity(places, h, torque, rate, given)
