@@ -131,13 +131,7 @@ class SpringFlow:
         }
         damped = WIDE * len(np.trim_zeros(spring["damping"].reshape(-1, WIDE).any(axis=1), "b"))
         parts = [np.zeros(HEAD + 6 * p), np.repeat(inverse, 2), np.zeros(4 * len(moving))]
-        parts += [
-            spring["rest_length"],
-            spring["stiffness"],
-            _SHORTEST * spring["rest_length"],
-            DRIFTS,
-            KICKS,
-        ]
+        parts += [spring["rest_length"], spring["stiffness"], DRIFTS, KICKS]
         slowed = np.flatnonzero(drag_per_mass(state, moving) > 0.0)
         by_drag = np.full(-(-len(slowed) // WIDE) * WIDE, spare)
         by_drag[: len(slowed)] = slowed
@@ -160,7 +154,7 @@ class SpringFlow:
         whole += [*(dampers if damped else ()), by_drag, alone]
         self.changes_with_speed = bool(drag["quadratic"][alone].any())
         self.arrays: Plain[Springs] = np.concatenate(parts), np.concatenate(whole).astype(np.int64)
-        self.arrays[0][LONGEST] = step
+        self.arrays[0][LONGEST : LONGEST + 2] = step, _SHORTEST
         self._places = p
         self._physics: object = None
 

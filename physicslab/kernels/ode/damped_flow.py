@@ -205,7 +205,7 @@ def _evaluate(
             taken = taken + opening * opening
             fx, fy = fx + opening * nx, fy + opening * ny
         _pull_ends(places, links, full, turns, arms, at, fx, fy)
-        short |= mask_bits(length < followed * take(links.shortest, at))
+        short |= mask_bits(length < followed * take(links.rest, at))
     if full.damped > 0:
         full.sums[0] = sum_of(taken)
         slow(places, slowed, places.speed, full.sums, True, len(slowed.places))
@@ -477,7 +477,7 @@ def flow_forces(motion: Motion, springs: Springs, span: float, account: Vectors)
                 given[i] = 0.0
             made = _advance(
                 places, links, full, slowed, drifts, kicks, span / (finer * steps), finer * steps,
-                S.still_followed(finer), turns, ends, held, given,
+                S.still_followed(springs, finer), turns, ends, held, given,
             )  # fmt: skip
             finer *= 2
         places.known[0] = 1.0 if made >= 0 else 0.0

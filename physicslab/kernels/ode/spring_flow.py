@@ -38,9 +38,10 @@ not move; how many of the bodies on springs drag slows, made a multiple of eight
 first on, may have dampers. Then :attr:`Places.moving`, the springs' ends at A and B, and the ``ends`` that
 springs do not move; how far terms reach, and dampers at these ends; bodies on springs that drag slows; bodies
 in drag alone."""
-KNOWN, WEIGHT, _GIVEN, UNIFORM, LONGEST, HEAD = 0, 1, 3, 12, 14, 16
+KNOWN, WEIGHT, _GIVEN, UNIFORM, LONGEST, SHORTEST, HEAD = 0, 1, 3, 12, 14, 15, 16
 """The numbers begin with: whether the pull is known (1,), the weight of all that moves on springs (2,) [N],
-what is given (GIVEN,), gravity (2,) [m/s^2], the longest step of the method [s]. Then those of
+what is given (GIVEN,), gravity (2,) [m/s^2], the longest step of the method [s], the share of its rest length
+below which the direction of a spring changes too fast for such a step. Then those of
 :class:`Places` and of :class:`Links` in order, drifts and kicks, and what dampers and drag need."""
 
 
@@ -64,16 +65,12 @@ class Places(NamedTuple):
 
 
 class Links(NamedTuple):
-    """The springs in blocks of eight: rows of :class:`Places` at A and B, numbers of each.
-
-    ``shortest`` is the length [m] below which the direction of a spring changes too fast for the usual steps.
-    """
+    """The springs in blocks of eight: rows of :class:`Places` at A and B, numbers of each."""
 
     a: Rows
     b: Rows
     rest: Numbers
     stiffness: Numbers
-    shortest: Numbers
 
 
 @inlined
@@ -119,13 +116,14 @@ def steps_of(springs: Springs, span: float) -> int:
 
 
 @always_inlined
-def still_followed(finer: int) -> float:
-    """Return down to which share of its usual shortest length steps shortened by a factor follow a spring.
+def still_followed(springs: Springs, finer: int) -> float:
+    """Return down to which share of its rest length steps shortened by a factor follow a spring.
 
     Across a spring of the rest length L that is l long, the pull changes as one of (L / l - 1) times the
     stiffness does along it.
     """
-    return 2.0 / (1.0 + finer * finer)
+    share: float = springs.numbers[SHORTEST] * 2.0 / (1.0 + finer * finer)
+    return share
 
 
 @always_inlined
@@ -140,7 +138,7 @@ def _pull(places: Places, links: Links, at: int, followed: float) -> int:
     fx, fy = share * dx, share * dy
     add_vectors(places.pull, links.a, at, fx, fy)
     add_vectors(places.pull, links.b, at, -fx, -fy)
-    return mask_bits(length < followed * take(links.shortest, at))
+    return mask_bits(length < followed * take(links.rest, at))
 
 
 @inlined
@@ -271,7 +269,7 @@ def named(springs: Springs) -> tuple[Places, Links, Rows, Numbers, Numbers, Numb
     """Return places, links, ends, what is given, drifts, kicks, and where in the numbers there are others."""
     numbers, whole = springs
     m, p, n, s = whole[0], whole[1], whole[2], whole[3]
-    at, links_at, shares_at = HEAD + 6 * p, HEAD + 6 * p + 6 * m, HEAD + 6 * p + 6 * m + 3 * n
+    at, links_at, shares_at = HEAD + 6 * p, HEAD + 6 * p + 6 * m, HEAD + 6 * p + 6 * m + 2 * n
     places = Places(
         whole[SIZES : SIZES + m],
         numbers[HEAD : HEAD + 2 * p].reshape(p, 2),
@@ -286,8 +284,7 @@ def named(springs: Springs) -> tuple[Places, Links, Rows, Numbers, Numbers, Numb
         whole[SIZES + m : SIZES + m + n],
         whole[SIZES + m + n : SIZES + m + 2 * n],
         numbers[links_at : links_at + n],
-        numbers[links_at + n : links_at + 2 * n],
-        numbers[links_at + 2 * n : shares_at],
+        numbers[links_at + n : shares_at],
     )
     ends = whole[SIZES + m + 2 * n : SIZES + m + 2 * n + whole[7]]
     given = numbers[_GIVEN : _GIVEN + GIVEN]
@@ -323,7 +320,7 @@ def flow_springs(motion: Motion, springs: Springs, span: float, account: Vectors
         gather(places, motion)
         for i in range(GIVEN):
             given[i] = 0.0
-        h, followed = span / (finer * steps), still_followed(finer)
+        h, followed = span / (finer * steps), still_followed(springs, finer)
         made = _advance(places, links, drifts, kicks, h, finer * steps, followed, ends, given)
         finer *= 2
     places.known[0] = 1.0 if made >= 0 else 0.0
