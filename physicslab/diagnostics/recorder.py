@@ -14,7 +14,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Transform, Velocity
 from physicslab.diagnostics.energy import Booked, measure_energy, read_books
 from physicslab.diagnostics.figures import Figures
 from physicslab.diagnostics.impact_table import NO_IMPACTS, ImpactReader, impact_table
@@ -25,7 +24,7 @@ from physicslab.ecs.conditions import Condition
 from physicslab.ecs.fields import Field, InvalidValue
 from physicslab.ecs.quantity_text import InvalidText
 from physicslab.state.run import BODY_COLUMNS, Column, Run
-from physicslab.state.samples import Samples
+from physicslab.state.samples import Samples, moving_rows, put_motion
 from physicslab.stepping.breaks import first_time
 from physicslab.stepping.keyframe import Keyframe
 from physicslab.stepping.run import RunLength, run_length, strides_as_it_goes
@@ -290,10 +289,7 @@ class _Replay:
                 with world.active():
                     remove_joint(broken[0].entity, COMPONENTS[broken.pop(0).kind])
                 world.synchronise()
-            transform, velocity = world.table(Transform), world.table(Velocity)
-            rows = world.batch(Transform, Velocity).rows
-            transform["position"][rows], velocity["linear"][rows] = bodies[:, 0:2], bodies[:, 3:5]
-            transform["angle"][rows], velocity["angular"][rows] = bodies[:, 2], bodies[:, 5]
+            put_motion(world, moving_rows(world), bodies)
             yield world
 
     def impacts(self) -> dict[str, NDArray[Any]]:

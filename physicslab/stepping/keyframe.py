@@ -177,8 +177,9 @@ class Keyframe:
         self._sleep: KeptSleep = KeptSleep.of(world.sleep, before[1])
         self._joints = list(world.joints.kept())
 
-    def take_records(self, world: State) -> None:
+    def take_records(self, world: Kept) -> None:
         """Keep what the systems of a world have recorded by now."""
+        assert isinstance(world, State)
         self._own = {system.name: kept for system in world.schedule.running if (kept := system.keep())}
 
     def arrays(self) -> Iterator[_Array]:
