@@ -232,7 +232,7 @@ def test_figures_reach_up_to_the_moment_of_an_impact(text: str, value: float, dt
 def test_figures_hold_where_impacts_follow_within_a_step(seed: int) -> None:
     """Means of velocities were up to .65 m/s off, those of the energy 1 %."""
     random = Random(seed)
-    laws = PhysicsConfig(gravity=(0.0, 0.0), bounds=(0.0, 0.0, 2.0, 2.0), bounds_restitution=0.6)
+    laws = PhysicsConfig(gravity_mode="none", bounds=(0.0, 0.0, 2.0, 2.0), bounds_restitution=0.6)
     world = World(physics=laws)
     for k in range(9):
         place, velocity = (

@@ -173,12 +173,12 @@ class Record:
     ) -> None:  # fmt: skip
         """Note quantities that the motion of bodies tells, before and after impacts of the last step.
 
-        Of what a joint holds the motion is not known then.
+        The motion of bodies that joints hold is not known then.
         """
         world = self._world
-        concerned = {body for _, _, body in self._derived}
-        if None not in concerned:
-            struck = [np.isin(impacts[name], list(concerned)) for name in ("entity_a", "entity_b")]
+        concerned = [body for _, _, body in self._derived if body is not None]
+        if len(concerned) == len(self._derived):
+            struck = [np.isin(impacts[name], concerned) for name in ("entity_a", "entity_b")]
             impacts = impacts[struck[0] | struck[1]]
         if len(impacts) > _MANY or not np.array_equal(rows, moving_rows(world)):
             return
