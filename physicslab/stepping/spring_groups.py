@@ -20,8 +20,8 @@ from physicslab.systems.system import ForceSystem
 _RESOLVED = 0.26
 """omega h of the steps of spring_splitting. Its phase is then right to 4e-10, and what it adds to the error
 of contacts within four substeps is 1e-5 of that (docs/decisions/springs-beside-contacts.md)."""
-_DAMPED = 2.0
-"""Most that a rate of decay, whose exponential function a kick has, may be in a step."""
+_DAMPED = 1.0
+"""The same for rates of decay, whose exponential function a kick has."""
 _MULTIPLIED = 8
 """How often x is multiplied where bounds on rates are made closer: for nets of all masses within 4 %."""
 _BEYOND = MAX_STEPS
@@ -118,7 +118,7 @@ def spring_groups(state: State, forces: Sequence[ForceSystem], rows: NDArray[np.
     sprung[of[np.isin(moving, np.concatenate((a, b)))]] = True
     swing, decay, rate = (np.where(sprung, rates, 0.0) for rates in (swing, decay, rate))
     steps = [
-        max(steps_needed(fast, half, _RESOLVED), steps_of_decay(slowed, half))
+        max(steps_needed(fast, half, _RESOLVED), steps_needed(slowed, half, _DAMPED))
         for fast, slowed in zip(swing.tolist(), decay.tolist(), strict=True)
     ]
     kinds: dict[int, list[int]] = {}
@@ -133,16 +133,6 @@ def spring_groups(state: State, forces: Sequence[ForceSystem], rows: NDArray[np.
         most = 0 if kind == _BEYOND else max(steps[label] for label in chosen)
         groups.append(SpringGroup(part, most, float(rate[chosen].max()), float(decay[chosen].max())))
     return groups
-
-
-def steps_of_decay(rate: float, h: float) -> int:
-    """Return into how many steps a time h [s] is divided for a rate of decay [1/s].
-
-    What comes to a stop within v / rate is off by 6e-5 (rate h)^4 of that: in n steps by no more than in one
-    where rate h is 1, if n^4 is (rate h)^3.
-    """
-    decay = rate * h
-    return steps_needed(max(decay**0.75, decay / _DAMPED), 1.0, 1.0)
 
 
 def _closer(

@@ -11,152 +11,26 @@ hold. Bodies that only drag and gravity act on are followed each by itself
 """
 
 import math
-from typing import NamedTuple
 
-from physicslab.kernels import Numbers, Rows, Vectors, always_inlined, inlined, inlined_by_numba
+from physicslab.kernels import Numbers, Rows, Vectors, always_inlined, inlined
 from physicslab.kernels.accounts import DAMPING, book
 from physicslab.kernels.arguments import Motion, Springs
 from physicslab.kernels.directions import face
 from physicslab.kernels.float64x8 import (
-    Wide,
-    add_vectors,
     choose,
     everywhere,
     mask_bits,
     put,
-    put_numbers,
     root,
     sum_of,
     take,
-    take_numbers,
-    take_vectors,
 )
 from physicslab.kernels.ode import spring_flow as S
 from physicslab.kernels.ode.drag_flow import fall_in_drag
 from physicslab.kernels.ode.held_drag import Slowed, slow, slow_alone, slowed_in
+from physicslab.kernels.ode.spring_ends import Full, apart, full_in, opening_of, pull_ends
 from physicslab.kernels.ode.spring_flow import Links, Places
 from physicslab.kernels.wide_layout import WIDE
-
-type Arms = tuple[Wide, Wide, Wide, Wide]
-
-
-class Full(NamedTuple):
-    """Properties of dampers and arms beside :class:`Places` and :class:`Links`.
-
-    ``damped`` is how many slots, from the first on, may have dampers; ``reach`` (4 MOST_TERMS k,) tells, of
-    each term of the series of k kicks, of how many slots, bodies, ends that springs do not move, and slowed
-    places it is, from the first on.
-    The rest is of p places, m bodies and n springs. ``spin_gain`` (m,) is the inverse inertia, 0 where no
-    spring may turn a body; ``angle`` [rad] of m bodies and of more, so that they are a multiple of eight,
-    ``facing`` the cosines and sines of as many and of p; ``spin`` (p,) [rad/s]. ``rate`` (p, 2) and
-    ``spin_rate`` (p,) are the last derivatives of velocities that were taken, ``twist`` (p,) torques.
-    ``strength`` (n,) are the roots of the dampings; ``along_x``, ``along_y`` (n,) directions times these,
-    ``first`` and ``opening`` (n,) how fast springs lengthen times these, and its last derivative.
-    ``arm_a``, ``arm_b`` (2 n,) are in the frames of bodies, x first, ``turned_a``, ``turned_b`` in that of
-    the world. From ``along_x`` to ``opening`` nothing is noted but of dampers. ``sums`` (6,) are of the last
-    derivative: its products with the first, with the one before and with itself times the resistance of
-    dampers and drag, and the force [N] (x, y) and torque of drag by it.
-    """
-
-    damped: int
-    reach: Rows
-    spin_gain: Numbers
-    angle: Numbers
-    facing: Vectors
-    rate: Vectors
-    spin: Numbers
-    spin_rate: Numbers
-    twist: Numbers
-    strength: Numbers
-    along_x: Numbers
-    along_y: Numbers
-    first: Numbers
-    opening: Numbers
-    arm_a: Numbers
-    arm_b: Numbers
-    turned_a: Numbers
-    turned_b: Numbers
-    sums: Numbers
-
-
-@inlined_by_numba
-def _full(numbers: Numbers, at: int, m: int, p: int, n: int, damped: int, reach: Rows) -> Full:
-    """Return the arrays that begin at a place of the numbers."""
-    eights, facing = -(-m // WIDE) * WIDE, at + m + -(-m // WIDE) * WIDE
-    rate = facing + 2 * (p + WIDE)
-    spin, links = rate + 2 * p, rate + 5 * p
-    arms = links + 5 * n
-    return Full(
-        damped,
-        reach,
-        numbers[at : at + m],
-        numbers[at + m : at + m + eights],
-        numbers[facing:rate].reshape(p + WIDE, 2),
-        numbers[rate:spin].reshape(p, 2),
-        numbers[spin : spin + p],
-        numbers[spin + p : spin + 2 * p],
-        numbers[spin + 2 * p : links],
-        numbers[links : links + n],
-        numbers[links + n : links + 2 * n],
-        numbers[links + 2 * n : links + 3 * n],
-        numbers[links + 3 * n : links + 4 * n],
-        numbers[links + 4 * n : arms],
-        numbers[arms : arms + 2 * n],
-        numbers[arms + 2 * n : arms + 4 * n],
-        numbers[arms + 4 * n : arms + 6 * n],
-        numbers[arms + 6 * n : arms + 8 * n],
-        numbers[arms + 8 * n : arms + 8 * n + 6],
-    )
-
-
-@always_inlined
-def _turned(full: Full, rows: Rows, arm: Numbers, at: int) -> tuple[Wide, Wide]:
-    """Return where eight ends are on turned bodies."""
-    c, s = take_vectors(full.facing, rows, at)
-    x, y = take(arm, at), take(arm, len(rows) + at)
-    return c * x - s * y, s * x + c * y
-
-
-@always_inlined
-def _apart(places: Places, links: Links, full: Full, turns: bool, at: int) -> tuple[Wide, Wide, Arms]:
-    """Return from where to where eight springs go, and where their ends are on turned bodies."""
-    xa, ya = take_vectors(places.place, links.a, at)
-    xb, yb = take_vectors(places.place, links.b, at)
-    dx, dy = xb - xa, yb - ya
-    ax = ay = bx = by = everywhere(0.0)
-    if turns:
-        ax, ay = _turned(full, links.a, full.arm_a, at)
-        bx, by = _turned(full, links.b, full.arm_b, at)
-        dx, dy = dx + (bx - ax), dy + (by - ay)
-    return dx, dy, (ax, ay, bx, by)
-
-
-@always_inlined
-def _opening(
-    linear: Vectors, angular: Numbers, links: Links, turns: bool, arms: Arms, at: int
-) -> tuple[Wide, Wide]:
-    """Return the velocities, or their derivatives, of the ends of eight springs at B against those at A."""
-    uxa, uya = take_vectors(linear, links.a, at)
-    uxb, uyb = take_vectors(linear, links.b, at)
-    ux, uy = uxb - uxa, uyb - uya
-    if turns:
-        ax, ay, bx, by = arms
-        wa, wb = take_numbers(angular, links.a, at), take_numbers(angular, links.b, at)
-        ux, uy = ux + (wa * ay - wb * by), uy + (wb * bx - wa * ax)
-    return ux, uy
-
-
-@always_inlined
-def _pull_ends(
-    places: Places, links: Links, full: Full, turns: bool, arms: Arms, at: int, fx: Wide, fy: Wide
-) -> None:
-    """Add the pull of eight springs to both ends."""
-    add_vectors(places.pull, links.a, at, fx, fy)
-    add_vectors(places.pull, links.b, at, -fx, -fy)
-    if turns:
-        ax, ay, bx, by = arms
-        put_numbers(full.twist, links.a, at, take_numbers(full.twist, links.a, at) + (ax * fy - ay * fx))
-        put_numbers(full.twist, links.b, at, take_numbers(full.twist, links.b, at) - (bx * fy - by * fx))
 
 
 @inlined
@@ -183,7 +57,7 @@ def _evaluate(
     short, n, taken = 0, len(links.a), everywhere(0.0)
     _clear(places, full, turns, len(places.moving), ends, len(ends))
     for at in range(0, n, WIDE):
-        dx, dy, arms = _apart(places, links, full, turns, at)
+        dx, dy, arms = apart(places, links, full, turns, at)
         length = root(dx * dx + dy * dy)
         share = choose(length > 0.0, 1.0 / length, 0.0)
         nx, ny = dx * share, dy * share
@@ -195,7 +69,7 @@ def _evaluate(
                 put(full.turned_a, n + at, arms[1])
                 put(full.turned_b, at, arms[2])
                 put(full.turned_b, n + at, arms[3])
-            ux, uy = _opening(places.speed, full.spin, links, turns, arms, at)
+            ux, uy = opening_of(places.speed, full.spin, links, turns, arms, at)
             strength = take(full.strength, at)
             nx, ny = strength * nx, strength * ny
             opening = nx * ux + ny * uy
@@ -204,7 +78,7 @@ def _evaluate(
             put(full.first, at, opening)
             taken = taken + opening * opening
             fx, fy = fx + opening * nx, fy + opening * ny
-        _pull_ends(places, links, full, turns, arms, at, fx, fy)
+        pull_ends(places, links, full, turns, arms, at, fx, fy)
         short |= mask_bits(length < followed * take(links.rest, at))
     if full.damped > 0:
         full.sums[0] = sum_of(taken)
@@ -228,14 +102,14 @@ def _resist(
         if turns:
             ax, ay = take(full.turned_a, at), take(full.turned_a, n + at)
             bx, by = take(full.turned_b, at), take(full.turned_b, n + at)
-        ux, uy = _opening(full.rate, full.spin_rate, links, turns, (ax, ay, bx, by), at)
+        ux, uy = opening_of(full.rate, full.spin_rate, links, turns, (ax, ay, bx, by), at)
         nx, ny = take(full.along_x, at), take(full.along_y, at)
         opening = nx * ux + ny * uy
         by_first = by_first + opening * take(full.first, at)
         by_last = by_last + opening * take(full.opening, at)
         by_itself = by_itself + opening * opening
         put(full.opening, at, opening)
-        _pull_ends(places, links, full, turns, (ax, ay, bx, by), at, opening * nx, opening * ny)
+        pull_ends(places, links, full, turns, (ax, ay, bx, by), at, opening * nx, opening * ny)
     full.sums[0], full.sums[1], full.sums[2] = sum_of(by_first), sum_of(by_last), sum_of(by_itself)
     slow(places, slowed, full.rate, full.sums, False, full.reach[reach + 3 * S.MOST_TERMS])
 
@@ -395,8 +269,8 @@ def _follows(places: Places, links: Links, full: Full, turns: bool, h: float) ->
     """Whether no spring turns too far, or changes too much, in ``h`` seconds."""
     fast = 0
     for at in range(0, len(links.a), WIDE):
-        dx, dy, arms = _apart(places, links, full, turns, at)
-        ux, uy = _opening(places.speed, full.spin, links, turns, arms, at)
+        dx, dy, arms = apart(places, links, full, turns, at)
+        ux, uy = opening_of(places.speed, full.spin, links, turns, arms, at)
         far = (ux * ux + uy * uy) * (h * h) > (dx * dx + dy * dy) * (S.MAX_TURN * S.MAX_TURN)
         fast |= mask_bits(far & (take(links.rest, at) > 0.0))
     return fast == 0
@@ -467,7 +341,7 @@ def flow_forces(motion: Motion, springs: Springs, span: float, account: Vectors)
         dragged, reach = last - alone - whole[8], S.SIZES + m + 2 * n + whole[7]
         behind = reach + 4 * S.MOST_TERMS * (len(kicks) + 1)
         held = whole[behind:dragged]
-        full, slowed = _full(numbers, at, m, p, n, whole[9], whole[reach:behind]), slowed_in(springs)
+        full, slowed = full_in(numbers, at, m, p, n, whole[9], whole[reach:behind]), slowed_in(springs)
         steps, finer, made = S.steps_of(springs, span), 1, S.TURNS_FAST
         while made < 0 and finer <= S.FINEST:
             S.gather(places, motion)

@@ -28,7 +28,7 @@ BY_SPRINGS, BY_GRAVITY, BY_HAND, DISSIPATED, BY_DAMPERS, GIVEN = 0, 3, 4, 5, 6, 
 """Where in what is given are the momentum (x, y) and the angular momentum that springs bring in [N s, N m s];
 the angular momentum of gravity [N m s]; the work of ends that are driven [J]; what dampers take [J]; the
 momenta that they bring in."""
-MOST_TERMS = 12
+MOST_TERMS = 10
 """Terms of the series of a kick for which there is room."""
 SIZES = 10
 """The whole numbers begin with: how many bodies move on springs, how many places there are, slots for
