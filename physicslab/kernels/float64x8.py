@@ -308,21 +308,6 @@ def _put_vectors_type(context: Any, vectors: Any, rows: Any, first: Any, x: Any,
     return types.void(vectors, rows, first, x, y), generate
 
 
-def _add_vectors_type(context: Any, vectors: Any, rows: Any, first: Any, x: Any, y: Any) -> Any:
-    """Add to the coordinates of eight rows of an array (n, 2), one after the other."""
-
-    def generate(context: Any, build: Any, signature: Any, arguments: Any) -> Any:
-        data = _data(context, build, signature.args[0], arguments[0])
-        x, y = arguments[3], arguments[4]
-        for slot, row in enumerate(_rows(context, build, signature, arguments)):
-            place = _vector_at(build, data, row)
-            added = build.fadd(build.load(place, align=8), _shuffled(build, x, y, [slot, WIDE + slot]))
-            build.store(added, place, align=8)
-        return context.get_dummy_value()
-
-    return types.void(vectors, rows, first, x, y), generate
-
-
 def _put_pairs_type(context: Any, vectors: Any, first: Any, x: Any, y: Any) -> Any:
     """Give eight rows of an array (n, 2), one after the other, their coordinates."""
 
@@ -356,5 +341,4 @@ take_numbers: Callable[[Numbers, Rows, int], Wide] = _inline(_take_numbers_type)
 put_numbers: Callable[[Numbers, Rows, int, Wide], None] = _inline(_put_numbers_type)
 take_vectors: Callable[[Vectors, Rows, int], tuple[Wide, Wide]] = _inline(_take_vectors_type)
 put_vectors: Callable[[Vectors, Rows, int, Wide, Wide], None] = _inline(_put_vectors_type)
-add_vectors: Callable[[Vectors, Rows, int, Wide, Wide], None] = _inline(_add_vectors_type)
 put_pairs: Callable[[Vectors, int, Wide, Wide], None] = _inline(_put_pairs_type)

@@ -92,11 +92,6 @@ def _put_vectors(vectors: _Lanes, rows: NDArray[np.int64], first: int, x: _Lanes
     vectors[eight, 0], vectors[eight, 1] = x, y
 
 
-@equivalent_for(float64x8.add_vectors)
-def _add_vectors(vectors: _Lanes, rows: NDArray[np.int64], first: int, x: _Lanes, y: _Lanes) -> None:
-    np.add.at(vectors, rows[first : first + WIDE], np.stack((x, y), axis=1))
-
-
 @equivalent_for(float64x8.put_pairs)
 def _put_pairs(vectors: _Lanes, first: int, x: _Lanes, y: _Lanes) -> None:
     vectors[first : first + WIDE, 0], vectors[first : first + WIDE, 1] = x, y

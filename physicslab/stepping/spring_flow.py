@@ -47,16 +47,17 @@ def _in_blocks(a: NDArray[np.int64], b: NDArray[np.int64], moving: int) -> NDArr
     """Return the springs in blocks of eight (8 n,), -1 where there is none.
 
     No two of a block pull at one of the bodies that move, the first so many; what a hand or a given speed
-    moves is among these, as the work on it is booked. Each goes into the first block with room after those
-    of the springs before it that do.
+    moves is among these, as the work on it is booked. Each goes into the first block with room for it.
     """
-    free = [0] * moving
+    free, within = [0] * moving, [set[int]() for _ in range(moving)]
     blocks: list[list[int]] = []
     full = 0  # all blocks before this one are
     for spring, ends in enumerate(zip(a.tolist(), b.tolist(), strict=True)):
         held = [end for end in ends if end < moving]
         block = max(full, *(free[end] for end in held)) if held else full
-        while block < len(blocks) and len(blocks[block]) == WIDE:
+        while block < len(blocks) and (
+            len(blocks[block]) == WIDE or any(block in within[end] for end in held)
+        ):
             block += 1
         if block == len(blocks):
             blocks.append([])
@@ -64,7 +65,9 @@ def _in_blocks(a: NDArray[np.int64], b: NDArray[np.int64], moving: int) -> NDArr
         while full < len(blocks) and len(blocks[full]) == WIDE:
             full += 1
         for end in held:
-            free[end] = block + 1
+            within[end].add(block)
+            while free[end] in within[end]:
+                free[end] += 1
     return np.array([[*block, *[-1] * (WIDE - len(block))] for block in blocks], np.int64).ravel()
 
 

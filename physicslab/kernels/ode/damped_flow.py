@@ -10,7 +10,10 @@ hold. Bodies that only drag and gravity act on are followed each by itself
 (:mod:`physicslab.kernels.ode.drag_flow`).
 """
 
+import itertools
 import math
+
+import numpy as np
 
 from physicslab.kernels import Numbers, Rows, Vectors, always_inlined, inlined
 from physicslab.kernels.accounts import DAMPING, book
@@ -31,6 +34,14 @@ from physicslab.kernels.ode.held_drag import Slowed, slow, slow_alone, slowed_in
 from physicslab.kernels.ode.spring_ends import Full, apart, full_in, opening_of, pull_ends
 from physicslab.kernels.ode.spring_flow import Links, Places
 from physicslab.kernels.wide_layout import WIDE
+
+_PRODUCTS = np.zeros((S.MOST_TERMS + 1, 2 * S.MOST_TERMS))
+"""Shares in the work of dampers of the product of two derivatives of velocities, by how many terms a series
+has and by the order of both together: the integral of t^order times the sum of 1 / (j! k!) over all j + k
+that are the order. It is the same product for all j and k above 0, as dampers resist both ends alike."""
+for _j, _k in itertools.product(range(1, S.MOST_TERMS), repeat=2):
+    _share = 1.0 / (math.factorial(_j) * math.factorial(_k) * (_j + _k + 1))
+    _PRODUCTS[max(_j, _k) + 1 :, _j + _k] += _share
 
 
 @inlined
@@ -82,7 +93,8 @@ def _evaluate(
         short |= mask_bits(length < followed * take(links.rest, at))
     if full.damped > 0:
         full.sums[0] = sum_of(taken)
-        slow(places, slowed, places.speed, full.sums, True, len(slowed.places))
+        if len(slowed.places) > 0:
+            slow(places, slowed, places.speed, full.sums, True, len(slowed.places))
     return short == 0
 
 
@@ -111,7 +123,8 @@ def _resist(
         put(full.opening, at, opening)
         pull_ends(places, links, full, turns, (ax, ay, bx, by), at, opening * nx, opening * ny)
     full.sums[0], full.sums[1], full.sums[2] = sum_of(by_first), sum_of(by_last), sum_of(by_itself)
-    slow(places, slowed, full.rate, full.sums, False, full.reach[reach + 3 * S.MOST_TERMS])
+    if len(slowed.places) > 0:
+        slow(places, slowed, full.rate, full.sums, False, full.reach[reach + 3 * S.MOST_TERMS])
 
 
 @inlined
@@ -124,9 +137,9 @@ def _change(places: Places, full: Full, first: bool, share: float, turns: bool, 
     speed, rate = places.speed.reshape(places.speed.size), full.rate.reshape(full.rate.size)
     pull, gain, gravity = places.pull.reshape(places.pull.size), places.gain, places.gravity
     for i in range(2 * bodies):
-        change = pull[i] * gain[i] + gravity[i] if first else pull[i] * gain[i]
-        rate[i] = change
-        speed[i] += share * change
+        rate[i] = pull[i] * gain[i] + gravity[i] if first else pull[i] * gain[i]
+    for i in range(2 * bodies):
+        speed[i] += share * rate[i]
     if turns:
         for i in range(bodies):
             full.spin_rate[i] = full.twist[i] * full.spin_gain[i]
@@ -188,24 +201,6 @@ def _terms(reach: Rows, at: int) -> int:
     return terms
 
 
-@always_inlined
-def _of_products(power: int, terms: int, span: float) -> float:
-    """Return the integral of t^power over a kick, times the sum of 1 / (j! k!) over j + k = power.
-
-    Both are from 1 to less than ``terms``. It is the share in the work of dampers of the product of two
-    derivatives of velocities, which is the same for all j and k, as a damper resists both ends alike.
-    """
-    first, found = 1.0, 0.0  # 1 / j!
-    for j in range(1, min(power, terms)):
-        first /= j
-        if power - j < terms:
-            second = first
-            for k in range(1, power - j + 1):
-                second /= k
-            found += second
-    return found * span ** (power + 1) / (power + 1)
-
-
 @inlined
 def _kick(
     places: Places, links: Links, full: Full, slowed: Slowed, span: float, number: int, turns: bool,
@@ -215,7 +210,7 @@ def _kick(
 
     ``number`` is which kick of a step it is, that where two steps meet after all of these. Dampers take the
     integral of c r^2, r being the series of how fast they open: of products of its derivatives with the
-    first and the last one, as all of the same order in sum are the same.
+    first and the last one, as all of the same order in sum are the same (:data:`_PRODUCTS`).
     """
     to, share, bodies = S.BY_DAMPERS if len(held) > 0 else S.BY_SPRINGS, span, len(places.moving)
     slots, sums = 4 * S.MOST_TERMS * number, full.sums
@@ -227,7 +222,7 @@ def _kick(
     _book_ends(places, full, share, ends, len(ends), to, turns, bodies, given)
     _change(places, full, True, share, turns, bodies)
     if full.damped > 0:
-        taken = span * sums[0]
+        taken, power = span * sums[0], 1.0
         _book_drag(sums, share, given)
         for term in range(1, terms):
             share *= span / (term + 1)
@@ -237,9 +232,9 @@ def _kick(
             _book_ends(places, full, share, ends, held_ends, to, turns, bodies, given)
             _change(places, full, False, share, turns, bodies)
             _book_drag(sums, share, given)
-            taken += 2.0 * share * sums[0] + _of_products(2 * term, terms, span) * sums[2]
-            if term > 1:
-                taken += _of_products(2 * term - 1, terms, span) * sums[1]
+            power *= span * span
+            odd, even = _PRODUCTS[terms, 2 * term - 1], _PRODUCTS[terms, 2 * term]
+            taken += 2.0 * share * sums[0] + power * (odd * sums[1] + span * even * sums[2])
         given[S.DISSIPATED] += taken
         _book_held(places, links, full, span, held, given)
 

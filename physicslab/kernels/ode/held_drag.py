@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 from physicslab.kernels import Numbers, Rows, Vectors, inlined, inlined_by_numba
 from physicslab.kernels.arguments import Springs
-from physicslab.kernels.float64x8 import add_vectors, everywhere, put, put_vectors, sum_of, take, take_vectors
+from physicslab.kernels.float64x8 import everywhere, put, put_vectors, sum_of, take, take_vectors
 from physicslab.kernels.ode.spring_flow import BY_DAMPERS, DISSIPATED, UNIFORM, Places
 from physicslab.kernels.wide_layout import WIDE
 
@@ -64,7 +64,8 @@ def slow(places: Places, slowed: Slowed, velocity: Vectors, sums: Numbers, first
             by_last = by_last + (drag_x * take(slowed.rates, at) + drag_y * take(slowed.rates, d + at))
         put(slowed.rates, at, x)
         put(slowed.rates, d + at, y)
-        add_vectors(places.pull, slowed.places, at, -drag_x, -drag_y)
+        pull_x, pull_y = take_vectors(places.pull, slowed.places, at)
+        put_vectors(places.pull, slowed.places, at, pull_x - drag_x, pull_y - drag_y)
         place_x, place_y = take_vectors(places.place, slowed.places, at)
         fx, fy, turned = fx + drag_x, fy + drag_y, turned + (place_x * drag_y - place_y * drag_x)
     sums[0] += sum_of(by_itself) if first else sum_of(by_first)

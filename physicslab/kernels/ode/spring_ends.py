@@ -5,9 +5,9 @@ from typing import NamedTuple
 from physicslab.kernels import Numbers, Rows, Vectors, always_inlined, inlined_by_numba
 from physicslab.kernels.float64x8 import (
     Wide,
-    add_vectors,
     everywhere,
     put_numbers,
+    put_vectors,
     take,
     take_numbers,
     take_vectors,
@@ -129,8 +129,10 @@ def pull_ends(
     places: Places, links: Links, full: Full, turns: bool, arms: Arms, at: int, fx: Wide, fy: Wide
 ) -> None:
     """Add the pull of eight springs to both ends."""
-    add_vectors(places.pull, links.a, at, fx, fy)
-    add_vectors(places.pull, links.b, at, -fx, -fy)
+    pull_x, pull_y = take_vectors(places.pull, links.a, at)
+    put_vectors(places.pull, links.a, at, pull_x + fx, pull_y + fy)
+    pull_x, pull_y = take_vectors(places.pull, links.b, at)
+    put_vectors(places.pull, links.b, at, pull_x - fx, pull_y - fy)
     if turns:
         ax, ay, bx, by = arms
         put_numbers(full.twist, links.a, at, take_numbers(full.twist, links.a, at) + (ax * fy - ay * fx))

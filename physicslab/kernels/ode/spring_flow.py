@@ -11,7 +11,7 @@ from typing import NamedTuple
 from physicslab.kernels import Numbers, Rows, Vectors, always_inlined, inlined, inlined_by_numba
 from physicslab.kernels.accounts import ENERGY, GRAVITY, HAND, SPRINGS, book
 from physicslab.kernels.arguments import Motion, Springs
-from physicslab.kernels.float64x8 import add_vectors, choose, mask_bits, root, take, take_vectors
+from physicslab.kernels.float64x8 import choose, mask_bits, put_vectors, root, take, take_vectors
 from physicslab.kernels.wide_layout import WIDE
 
 TURNS_FAST = -1
@@ -136,8 +136,10 @@ def _pull(places: Places, links: Links, at: int, followed: float) -> int:
     share = take(links.stiffness, at) * (length - take(links.rest, at)) / length
     share = choose(length > 0.0, share, 0.0)
     fx, fy = share * dx, share * dy
-    add_vectors(places.pull, links.a, at, fx, fy)
-    add_vectors(places.pull, links.b, at, -fx, -fy)
+    pull_x, pull_y = take_vectors(places.pull, links.a, at)
+    put_vectors(places.pull, links.a, at, pull_x + fx, pull_y + fy)
+    pull_x, pull_y = take_vectors(places.pull, links.b, at)
+    put_vectors(places.pull, links.b, at, pull_x - fx, pull_y - fy)
     return mask_bits(length < followed * take(links.rest, at))
 
 
