@@ -32,7 +32,9 @@ from physicslab.lab import worlds
 from physicslab.lab.bench.moving import chains
 from physicslab.lab.worlds import floor, place
 from physicslab.prefabs import box, circle
+from physicslab.state.packed import spring_ends
 from physicslab.stepping import split_forces, spring_flow
+from physicslab.stepping.kick_series import series_terms
 from physicslab.stepping.soft import Soft
 from physicslab.stepping.split_forces import SplitForces, SplitPart
 from physicslab.stepping.spring_groups import spring_groups
@@ -542,3 +544,46 @@ def test_what_drag_brakes_from_any_speed_slows_by_the_formula() -> None:
     world.run(seconds=1.0)
     assert world.component(ball, Velocity).linear.x == pytest.approx(1e9 / (1.0 + 1e9), rel=1e-6)
     assert place(world, ball).x == pytest.approx(math.log1p(1e9), rel=1e-6)
+
+
+# ---- terms -------------------------------------------------------------------------------------------------
+
+
+def damped_chain(light: float) -> World:
+    """Return a chain of 64 discs with dampers, far above a floor, of which the first may be light [kg]."""
+    world = far_floor(open_space())
+    row = [
+        circle(world, (0.25 * i, 0.02 * (i % 3)), radius=0.1, mass=0.1 if i else light, velocity=(0.0, i % 2))
+        for i in range(64)
+    ]
+    for a, b in pairwise(row):
+        world.spawn(Spring(a, b, rest_length=0.25, stiffness=30.0, damping=0.4))
+    return world
+
+
+def test_far_from_a_fast_damper_springs_have_as_few_terms_as_without_it() -> None:
+    def terms(light: float) -> Any:
+        world = damped_chain(light)
+        (part,) = split_of(world).parts
+        assert part.springs is not None
+        h = 0.5 * world.simulation.dt / world.simulation.substeps
+        springs = np.stack(spring_ends(world))
+        return series_terms(world, springs, np.array((0.35 * h,)), 1e-10)[0][0]
+
+    even, fast = terms(0.1), terms(0.002)
+    assert fast[0] >= 7 > even.max()
+    assert (np.diff(fast[:8]) <= 0).all() and (fast[8:] == even[8:]).all()
+
+
+def test_terms_that_are_left_out_change_nothing_that_counts() -> None:
+    def at_end(left_out: float) -> tuple[Any, float]:
+        world = damped_chain(0.002)
+        with patch.object(spring_flow, "_SERIES", left_out):
+            assert follows(world)
+        world.run(seconds=0.2)
+        return world.table(Transform)["position"].copy(), measure_account(world).energy["damping"]
+
+    (places, taken), (exact, all_taken) = at_end(1e-10), at_end(1e-17)
+    assert all_taken < -0.1
+    assert 0.0 < np.abs(places - exact).max() < 1e-10
+    assert taken == pytest.approx(all_taken, rel=1e-8)
