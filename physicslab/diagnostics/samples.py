@@ -31,8 +31,8 @@ _BOTH_SIDES = {
 _OF_MOTION = ("speed", "momentum", "angular momentum", "kinetic", "potential", "energy of", "total energy")
 """The beginnings of other quantities that the motion of bodies tells."""
 _MANY = 500
-"""Impacts of a step times bodies beyond which the world is not read at each, which takes as long as many steps
-do: of what so many change little by little there is a straight line through the step."""
+"""Impacts of a step times bodies beyond which the world is not read at each, which takes as long as many
+steps do: of what so many change little by little there is a straight line through the step."""
 _NAMES = {quantity.column.replace(" ", "_"): name for name, quantity in QUANTITIES.items()}
 """Quantities as expressions call them: ``vx``, ``kinetic``, ``energy``."""
 
