@@ -1,6 +1,6 @@
 """Forces of joints and contacts in a state that no step has led to, as a scene's before its first step.
 
-Only a step solves for them: one of a copy tells what they are, by the law that tells it after every other step.
+Only a step solves for them: one of a copy tells what they are, by the law that tells it after all others.
 """
 
 from contextlib import suppress
