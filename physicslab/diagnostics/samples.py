@@ -30,9 +30,9 @@ _BOTH_SIDES = {
 """Fields of IMPACT that have a quantity of a body just before an impact and just after it."""
 _OF_MOTION = ("speed", "momentum", "angular momentum", "kinetic", "potential", "energy of", "total energy")
 """The beginnings of other quantities that the motion of bodies tells."""
-_MANY = 8
-"""Impacts of a step beyond which these are not read at each, which takes as long as many steps do: of what so
-many change little by little there is a straight line through the step."""
+_MANY = 500
+"""Impacts of a step times bodies beyond which the world is not read at each, which takes as long as many
+steps do: of what so many change little by little there is a straight line through the step."""
 _NAMES = {quantity.column.replace(" ", "_"): name for name, quantity in QUANTITIES.items()}
 """Quantities as expressions call them: ``vx``, ``kinetic``, ``energy``."""
 
@@ -180,7 +180,9 @@ class Record:
         if len(concerned) == len(self._derived):
             struck = [np.isin(impacts[name], concerned) for name in ("entity_a", "entity_b")]
             impacts = impacts[struck[0] | struck[1]]
-        if len(impacts) > _MANY or not np.array_equal(rows, moving_rows(world)):
+        elif len(impacts) * len(rows) > _MANY:
+            return
+        if not np.array_equal(rows, moving_rows(world)):
             return
         now, last, bodies = world.time, motion_of_rows(world, rows), world.entity_index.entities[rows]
         begins, spans, motion = split_at_impacts(
