@@ -24,8 +24,8 @@ from physicslab.systems.system import ForceSystem
 
 _SHORTEST = 0.5
 """Share of its rest length below which a spring is not followed: across it, the pull changes faster."""
-_SERIES = 1e-10
-"""Share of a velocity that is left out of the series of the kicks of a flow, of dampers and drag."""
+_SERIES = 1e-11
+"""Share of a velocity that is left out of the series of a kick, which dampers and drag make one of."""
 
 
 def why_no_spring_flow(state: State, forces: Sequence[ForceSystem]) -> str | None:
@@ -113,7 +113,7 @@ class SpringFlow:
         springs = springs[:, (layout.place[springs[1:]] >= 0).all(axis=0)]
         step = 0.5 * state.simulation.dt / state.simulation.substeps / group.steps
         kicks = step * np.append(KICKS, KICKS[-1] + KICKS[0])
-        terms, terms_of_drag = series_terms(state, springs, kicks, _SERIES / group.steps)
+        terms, terms_of_drag = series_terms(state, springs, kicks, _SERIES)
         fastest_first = np.argsort(-terms.max(axis=0), kind="stable")
         terms, (rows, a, b) = terms[:, fastest_first], springs[:, fastest_first]
         held = np.isin(layout.moving, np.concatenate((a, b)))
