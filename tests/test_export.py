@@ -3,6 +3,7 @@
 import base64
 import html
 import json
+import pickle
 import re
 from pathlib import Path
 from typing import Any
@@ -29,12 +30,12 @@ from physicslab.components import (
     Velocity,
 )  # fmt: skip
 from physicslab.components.colour import rgb_of
-from physicslab.ecs.config import PhysicsConfig
+from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.export.look import style
 from physicslab.export.packing import pack
 from physicslab.export.parts import springs_of
 from physicslab.export.recording import RunRecorder, frame_run
-from physicslab.prefabs import circle, gas
+from physicslab.prefabs import box, circle, gas
 from physicslab.systems.standard import standard_systems
 from physicslab.theme import contrast
 
@@ -155,6 +156,30 @@ def test_the_page_of_a_recorded_run_does_not_make_accounts_up() -> None:
     columns = unpack(read["data"], read["instants"])[:, first : first + 3]
     assert np.isfinite(columns[:, 1]).all(), "where the bob is was recorded"
     assert np.isnan(columns[:, 2]).all(), "the books of each instant were not"
+
+
+def test_the_page_of_a_recorded_run_shows_a_joint_until_it_breaks() -> None:
+    """It had none of the joints that broke: it was made from the world at the end."""
+    run = swinging().record(1.0)
+    for _ in range(2):
+        read = document(run.page())
+        [rope] = read["joints"]
+        assert (rope["kind"], rope["until"]) == ("Rope", pytest.approx(0.394016, abs=1e-6))
+        columns = unpack(read["data"], read["instants"])
+        force = columns[:, 1 + len(read["energies"]) + 3]
+        assert (np.isfinite(force) == (columns[:, 0] < rope["until"])).all()
+        run = pickle.loads(pickle.dumps(run))
+
+
+def test_the_page_of_a_recorded_run_has_no_forces_of_soft_contacts() -> None:
+    """A ball that lay on the floor had an acceleration of 9.81 m/s^2 there."""
+    world = World(simulation=SimulationConfig(contacts="soft"))
+    box(world, (0.0, -0.5), width=20.0, height=1.0, static=True)
+    ball = circle(world, (0.0, 0.5), radius=0.3, restitution=0.6)
+    world.spawn(GraphLine(world.spawn(Graph()), "acceleration y", ball))
+    read = document(world.record(1.0).page())
+    shown = unpack(read["data"], read["instants"])[:, 1 + len(read["energies"]) + 3]
+    assert np.isnan(shown).all()
 
 
 def test_every_spaces_the_instants(tmp_path: Path) -> None:

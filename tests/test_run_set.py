@@ -88,10 +88,12 @@ def test_a_part_of_a_vector_is_set_and_the_other_stays() -> None:
     assert tuple(world.physics.gravity) == (1.0, -2.0)
     assign(world, ["ball.Velocity.linear=[3, 4]", "ball.Velocity.linear.x=5"])
     assert tuple(world.component("ball", Velocity).linear) == (5.0, 4.0)
-    must = "must be a part of it, .x or .y; it has no .z"
-    assert refusal(world, "ball.Velocity.linear.z=1") == f': {BALL}Velocity.linear = "1": {must}'
-    must = "must be a number, or a part of a vector; it has no .x"
-    assert refusal(world, "ball.Mass.mass.x=1") == f': {BALL}Mass.mass = "1": {must}'
+    must = "must be linear.x or linear.y"
+    assert refusal(world, "ball.Velocity.linear.z=1") == f': {BALL}Velocity.linear.z = "1": {must}'
+    must = 'physics.gravity.z = "1": must be gravity.x or gravity.y'
+    assert refusal(world, "physics.gravity.z=1") == f": {must}"
+    must = "must be a number, or a part of a vector"
+    assert refusal(world, "ball.Mass.mass.x=1") == f': {BALL}Mass.mass.x = "1": {must}'
     why = "'1 kg' is in kg; this is in m/s; must be a finite number m/s"
     line = f': {BALL}Velocity.linear.x = "1 kg": {why}'
     assert refusal(world, "ball.Velocity.linear.x=1 kg") == line

@@ -4,6 +4,7 @@ import json
 import math
 from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from desk import bits
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from physicslab.components import Drag, Held, Mass, Material, Rod, Shape, Spring, Transform, Velocity
+from physicslab.components import Drag, Held, Mass, Material, Rod, Shape, Spring, Thrust, Transform, Velocity
 from physicslab.contacts.islands import export_rests, wake
 from physicslab.contacts.memory import export_contacts
 from physicslab.contacts.report import contact_between, list_contacts
@@ -19,7 +20,7 @@ from physicslab.diagnostics.energy import measure_account, measure_energy, measu
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.files.json_text import json_text
-from physicslab.files.scene import read_scene, write_scene
+from physicslab.files.scene import load_scene, read_scene, save_scene, write_scene
 from physicslab.lab.worlds import floor, open_space
 from physicslab.prefabs import box, circle, container, pendulum, pile, stack
 from physicslab.state.state import State
@@ -739,3 +740,43 @@ def test_joints_hold_what_hangs_and_sleeps(idle: bool, speed: float) -> None:
         assert account.momentum["contact"].y == pytest.approx(2.0 * 9.81 * world.time, rel=1e-6)
         assert account.momentum["numerical"].magnitude < 1e-11
     assert sleepers(world) == ({bob} if speed else {slider, bob})
+
+
+@pytest.mark.parametrize("awake", [False, True])
+def test_joints_of_a_file_hold_what_sleeps_there(awake: bool, tmp_path: Path) -> None:
+    """Contacts had all of it in the accounts until a kernel measured the joints."""
+    world = World(simulation=SimulationConfig(sleeping=True, contacts="soft"))
+    box(world, (0.0, -0.5), width=9.0, height=1.0, static=True)
+    bob = circle(world, (-2.0, 2.0), radius=0.2, mass=1.5)
+    world.spawn(Rod(anchor_a=(-2.0, 4.0), b=bob))
+    world.run(seconds=1.0)
+    assert sleepers(world) == {bob}
+    save_scene(world, tmp_path / "asleep.json")
+    loaded = load_scene(tmp_path / "asleep.json")
+    if awake:
+        circle(loaded, (2.0, 9.0), radius=0.2)
+    loaded.run(seconds=0.5)
+    account = measure_account(loaded)
+    assert account.momentum["joints"].y == pytest.approx(1.5 * 9.81 * 0.5, rel=1e-9)
+    assert account.momentum["contact"].magnitude < 1e-9
+
+
+@pytest.mark.parametrize("idle", [False, True])
+@pytest.mark.parametrize("alone", [False, True])
+def test_all_forces_pull_what_sleeps_in_the_accounts(idle: bool, alone: bool) -> None:
+    """Thrust on a body that sleeps was booked to nothing, and friction did not hold it."""
+    world = World(simulation=SimulationConfig(sleeping=True, contacts="soft"))
+    box(world, (0.0, -0.5), width=9.0, height=1.0, static=True, friction=0.9)
+    crate = box(world, (0.0, 0.5), width=1.0, height=1.0, friction=0.9)
+    world.add(crate, Thrust(force=(2.0, 0.0)))
+    if not alone:
+        circle(world, (3.0, 90.0), radius=0.2)
+    if idle:
+        world.install(Idle())
+    world.run(seconds=2.0)
+    assert sleepers(world) == {crate}
+    account = measure_account(world)
+    assert account.momentum["thrust"].x == pytest.approx(4.0, rel=1e-9)
+    assert account.momentum["contact"].x == pytest.approx(-4.0, rel=1e-6)
+    assert account.angular_momentum["thrust"] == pytest.approx(-0.5 * 4.0, rel=1e-4)
+    assert account.momentum["numerical"].magnitude < 1e-11

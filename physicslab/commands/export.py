@@ -18,6 +18,7 @@ from physicslab.diagnostics.joint_closing import close_joints
 from physicslab.ecs.fields import InvalidValue
 from physicslab.ecs.text import printable, shortened
 from physicslab.export.film import Film, NoEncoder
+from physicslab.export.instants import Instants
 from physicslab.export.page import page, run_document
 from physicslab.export.recording import Box, NotShown, RunRecorder, extent_of_run
 from physicslab.files.replace import reason_of
@@ -76,10 +77,9 @@ def _run(
             extent = world.view or _extent(name, every, arguments, tiers)
             picture = MovingPicture(arguments.size, extent)
             with Film(output.path, arguments.size, rate) as film:
-                run = MeasuredRun(
-                    world, name, tiers, arguments.at_most,
-                    lambda now, _: film.write(picture.pixels(now)), every,
-                )  # fmt: skip
+                instants = Instants(world, every, lambda now: film.write(picture.pixels(now)))
+                keep, spacing = instants.keep, instants.spacing
+                run = MeasuredRun(world, name, tiers, arguments.at_most, keep, spacing)
                 run.go(arguments.seconds, None)
     except (Diverged, NotShown) as error:
         raise CommandError(f"{shortened(printable(name))}: {error}; no film was written", FAILED) from error

@@ -7,9 +7,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Mass, Material, Transform, Velocity
-from physicslab.contacts.arguments import joints_in
+from physicslab.contacts.arguments import acting_in, inverse_in, joints_in, motion_of
+from physicslab.ecs.vector import Vector2
 from physicslab.kernels.accounts import CONTACT
+from physicslab.kernels.arguments import Inverse, Motion, named_acting
 from physicslab.kernels.joints.blocks import Joints
+from physicslab.kernels.joints.soft import begin_joints
+from physicslab.kernels.python_fallback import fallback_of
 from physicslab.kernels.sleep import edits, islands
 from physicslab.kernels.solver import work
 from physicslab.state.state import State
@@ -125,17 +129,27 @@ def _book_rest(state: State, falling: _Marks) -> None:
     state.account.sums[CONTACT] -= (0.5 * energy, *momentum.sum(axis=0), spin)
 
 
+def measure_joints(state: State) -> None:
+    """Find the gradients of joints that have impulses from a file or a key frame, and were in no step yet."""
+    joints = Joints(*joints_in(state))
+    if joints.impulse.any() and not joints.gradient.any():
+        rotations = np.full((len(state.entity_index), 3), np.nan)
+        motion, inverse = Motion(*motion_of(state)), Inverse(*inverse_in(state))
+        acting = fallback_of(named_acting)(acting_in(state))
+        fallback_of(begin_joints)(joints, motion, rotations, inverse, acting, 0.0)
+
+
 def book_sleep(state: State, asleep: _Marks, h: float) -> None:
-    """Book that gravity pulls bodies (rows,) that sleep for ``h`` seconds, and what holds them."""
-    physics, bodies, acted = state.physics, state.bodies, state.contacts.impulse_dt
-    if physics.gravity_mode == "linear":
-        joints = Joints(*joints_in(state))
-        work.book_held(
-            state.table(Transform)["position"], state.table(Mass)["mass"], bodies.inverse_mass,
-            np.where(asleep, 0.0, bodies.inverse_mass), physics.gravity.x, physics.gravity.y, h,
-            joints.nodes, joints.body, joints.gradient, joints.impulse, h / (acted or _impulse_dt(state)),
-            state.account.sums,
-        )  # fmt: skip
+    """Book that forces pull bodies (rows,) that sleep for ``h`` seconds, and what holds them."""
+    measure_joints(state)
+    bodies, acted, joints = state.bodies, state.contacts.impulse_dt, Joints(*joints_in(state))
+    gravity = state.physics.gravity if state.physics.gravity_mode == "linear" else Vector2()
+    work.book_held(
+        state.table(Transform)["position"], state.table(Mass)["mass"], bodies.inverse_mass,
+        np.where(asleep, 0.0, bodies.inverse_mass), state.sleep.forces, state.uniform_forces, gravity.x,
+        gravity.y, state.sleep.other, h, joints.nodes, joints.body, joints.gradient, joints.impulse,
+        h / (acted or _impulse_dt(state)), state.account.sums,
+    )  # fmt: skip
 
 
 def _begin(state: State) -> None:

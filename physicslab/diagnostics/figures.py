@@ -3,7 +3,7 @@
 Samples are taken after each step. Between them a quantity is the polynomial through six samples around it
 that lie on one curve, so that a moment is not bound to steps: the error is of the sixth power of a step. An
 impact ends a curve: what it moves has two values at its moment, those of the curves before and after. Where
-too few samples are between two impacts, there is a straight line through them.
+few samples are between two impacts, a curve goes through these and the values that the log of impacts has.
 """
 
 from __future__ import annotations
@@ -35,6 +35,8 @@ an impact it is 1 to 3, of an oscillation 0.5 at nine samples a period. Of four 
 the second differences."""
 _ROUNDED = 1e-12
 """Share of the largest value below which differences are rounding."""
+_NEAR = 1e-3
+"""Share of a step by which a sample must be away from an impact to be a point of a curve beside it."""
 _HALVINGS = 60
 """How often an interval is halved in which a moment is."""
 _SAME = 1e-9
@@ -168,29 +170,30 @@ class Figures:
             return column[place]
         if not (times and times[0] <= time <= times[-1]):
             raise Undefined(f"the run has no time {time:.6g} s")
-        return self._through(self._curve(column, place, self._piece(name, time, after)), column, time)
+        return _polynomial(self._points(name, time, place, after=after), time)
 
-    def _piece(self, name: str, time: float, after: bool) -> range:
-        """Return the samples between the impacts before and behind a time [s], or the two around it."""
-        times, breaks = self.record.times, self.record.breaks.get(name, [])
+    def _points(self, name: str, time: float, place: int, *, after: bool) -> list[tuple[float, float]]:
+        """Return times and values on a curve around a time [s], between the impacts before and behind it."""
+        times, column = self.record.times, self.record.columns[name]
+        breaks, sides = self.record.breaks.get(name, []), self.record.sides.get(name, {})
         k = (bisect.bisect_right if after else bisect.bisect_left)(breaks, time)
         first = bisect.bisect_left(times, breaks[k - 1]) if k else 0
         stop = bisect.bisect_left(times, breaks[k]) if k < len(breaks) else len(times)
-        if not breaks or stop - first > 1:
-            return range(first, stop)
+        nodes: Sequence[int] = range(first, stop)
+        if not breaks or len(nodes) >= _FEW:
+            nodes = self._curve(column, place, range(first, stop))
+            return [(times[i], column[i]) for i in nodes]
+        ends = [
+            (breaks[i], sides[breaks[i]][i < k])
+            for i in (k - 1, k)
+            if 0 <= i < len(breaks) and breaks[i] in sides
+        ]
+        near = _NEAR * (times[1] - times[0])
+        between = [(times[i], column[i]) for i in nodes if all(abs(times[i] - t) > near for t, _ in ends)]
+        if len(ends) + len(between) > 1:
+            return ends + between
         place = max(bisect.bisect_left(times, time), 1)
-        return range(place - 1, place + 1)
-
-    def _through(self, nodes: Sequence[int], column: Sequence[float], time: float) -> float:
-        """Return the value at a time [s] of Lagrange's polynomial through some samples."""
-        times, total = self.record.times, 0.0
-        for i in nodes:
-            weight = 1.0
-            for j in nodes:
-                if j != i:
-                    weight *= (time - times[j]) / (times[i] - times[j])
-            total += weight * column[i]
-        return total
+        return [(times[i], column[i]) for i in (nodes if len(nodes) > 1 else range(place - 1, place + 1))]
 
     def _curve(self, column: Sequence[float], place: int, piece: range) -> range:
         """Return the samples of a piece on one curve with that at a place and the one before, or the nearest.
@@ -240,6 +243,18 @@ class Figures:
                 low, high = (left, high) if value(left) < value(right) else (low, right)
             best = max(best, value(0.5 * (low + high)) if low < high else best)
         return sign * best
+
+
+def _polynomial(points: Sequence[tuple[float, float]], time: float) -> float:
+    """Return the value at a time [s] of Lagrange's polynomial through points: times and values."""
+    total = 0.0
+    for i, (t, value) in enumerate(points):
+        weight = 1.0
+        for j, (other, _) in enumerate(points):
+            if j != i:
+                weight *= (time - other) / (t - other)
+        total += weight * value
+    return total
 
 
 def _like(of: Figures, expression: Expression, value: float) -> Quantity:

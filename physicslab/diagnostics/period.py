@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from physicslab.components import Mass, Pin, Rod, Spring, Transform, Velocity
+from physicslab.components import Charge, Drag, Mass, Molecule, Pin, Rod, Spring, Transform, Velocity
 from physicslab.ecs.vector import Vector2
 from physicslab.state.attached import motion_of_point
 from physicslab.state.joints import Joint
@@ -76,8 +76,9 @@ def period_of(world: World, entity: int) -> Period | None:
     """Return how long an oscillation of a body, a spring or a joint takes; ``None`` where there is none.
 
     One spring, rod or pin alone may hold the body, and its other end something fixed; then uniform gravity
-    and what holds it are looked at, and no other force and no contact. A body that hardly stretches its
-    spring is a pendulum, whose period follows from its amplitude and from how far the spring gives way.
+    and what holds it are looked at, of a spring also linear drag, and no contact. A body that hardly
+    stretches its spring is a pendulum, whose period follows from its amplitude and from how far the spring
+    gives way.
     """
     world.synchronise()
     joints = [one for one in world.joints.joints if entity in (one.entity, *_bodies_of(world, one))]
@@ -99,10 +100,37 @@ def period_of(world: World, entity: int) -> Period | None:
         swing = _on_a_string(world, number, bodies[0], mass)
         if swing is not None:
             return swing if swing.seconds > 0.0 else None
-    rate = spring.stiffness / mass - (0.5 * spring.damping / mass) ** 2
+    state = spring_state(world, number)
+    if state is None or any(_is_pulled_besides(world, end) for end in bodies):
+        return None
+    turned = sum(_turns(world, end, state) for end in bodies)
+    if turned and world.physics.gravity_mode == "linear" and world.physics.gravity.magnitude:
+        return None  # it turns until it hangs below
+    inverse = 1.0 / mass + turned
+    drags = [world.component(end, Drag).linear if world.has(end, Drag) else 0.0 for end in bodies]
+    drag = max(drag / world.component(end, Mass).mass for drag, end in zip(drags, bodies, strict=True))
+    lost = spring.damping * inverse + drag + world.physics.linear_damping
+    rate = spring.stiffness * inverse - (0.5 * lost) ** 2
     if rate <= 0.0:
         return None  # its damper lets it creep back
-    return Period(2.0 * math.pi / math.sqrt(rate), "of small oscillations along the spring: 2 pi sqrt(m / k)")
+    law = "of small oscillations along the spring" + ("" if turned or lost else ": 2 pi sqrt(m / k)")
+    return Period(2.0 * math.pi / math.sqrt(rate), law)
+
+
+def _turns(world: World, body: int, state: SpringState) -> float:
+    """Return by how much a pull along a spring turns a body's end along it [1/kg]: r^2 / I."""
+    inverse = float(world.bodies.inverse_inertia[world.entity_index.row_of[body]])
+    way, place = state.end - state.start, world.component(body, Transform).position
+    across = (state.start - place).cross(way) / (state.length or 1.0)
+    return inverse * across * across if abs(across) > _AT_REST * state.length else 0.0
+
+
+def _is_pulled_besides(world: World, body: int, *, swings: bool = False) -> bool:
+    """Whether charges, fields or molecules change a body's period: a steady pull only if it ``swings``."""
+    physics = world.physics
+    steady = swings and physics.electric_field != Vector2()
+    fields = steady or physics.magnetic_field or physics.coulomb_constant
+    return world.has(body, Molecule) or (world.has(body, Charge) and bool(fields))
 
 
 def _bodies_of(world: World, joint: Joint) -> list[int]:
@@ -117,6 +145,8 @@ def _on_a_joint(world: World, joint: Joint) -> Period | None:
     if len(moving) != 1 or _springs_at(world, moving[0]) or world.physics.gravity_mode != "linear":
         return None
     if sum(moving[0] in _bodies_of(world, one) for one in world.joints.joints) > 1:
+        return None
+    if _is_pulled_besides(world, moving[0], swings=True):
         return None
     (body,), part = moving, world.component(joint.entity, joint.kind)
     end = bodies.index(body)
@@ -163,7 +193,7 @@ def _swing(pull: Vector2, arm: Vector2, rate: float, length: float, give: float 
 
 
 def _on_a_string(world: World, number: int, body: int, mass: float) -> Period | None:
-    """Return the period of a pendulum on a spring; 0 s if it turns over; ``None`` for any other body."""
+    """Return the period of a pendulum on a spring; 0 s if it has none; ``None`` for any other body."""
     physics, state = world.physics, spring_state(world, number)
     spring, pull = world.component(number, Spring), world.physics.gravity.magnitude
     if physics.gravity_mode != "linear" or not pull or state is None:
@@ -173,6 +203,8 @@ def _on_a_string(world: World, number: int, body: int, mass: float) -> Period | 
     anchor = spring.anchor_a if own == body else spring.anchor_b
     if stretch > _STRING * spring.rest_length or anchor or state.length <= 0.0:
         return None
+    if _is_pulled_besides(world, body, swings=True):
+        return Period(0.0, "")
     pivot = state.end if own == body else state.start
     arm, velocity = world.component(body, Transform).position - pivot, world.component(body, Velocity).linear
     rate, length = arm.cross(velocity) / arm.dot(arm), spring.rest_length

@@ -1,7 +1,6 @@
 """Forces of joints and contacts in a state that no step has led to, as a scene's before its first step.
 
-Only a step solves for them: a very short one of a copy tells what they are, by the law that tells it after
-every other step.
+Only a step solves for them: one of a copy tells what they are, by the law that tells it after all others.
 """
 
 from contextlib import suppress
@@ -14,14 +13,16 @@ from physicslab.world import World
 
 _SHORT = 1e-4
 """Length of the step that finds them, in steps of the scene: nothing has moved by what can be seen. It is not
-shorter, as places are known to rounding only: contacts at rest would be apart by more than they close."""
+shorter, as places are known to rounding only: contacts at rest would be apart by more than they close. Where
+contacts are soft it is a whole step, as their law has its length in it: they take what is left of a velocity,
+and close what is left of a gap, within it."""
 
 _found: WeakKeyDictionary[World, "_Stepped"] = WeakKeyDictionary()
 """The last result for each world."""
 
 
 class _Stepped:
-    """A copy of a world that has made a short step; it is filled again where the world has changed."""
+    """A copy of a world that has made a step; it is filled again where the world has changed."""
 
     __slots__ = ("_copy", "_state", "_systems", "world")
 
@@ -42,14 +43,15 @@ class _Stepped:
                 self._systems, self._copy = systems, World(systems=[system.fresh() for system in systems])
             now, self._copy = self._copy, None  # one that fails is not used again
             Keyframe(world).fill(now)
-            now.step(_SHORT * world.simulation.dt)
+            is_soft = any((plan.collisions, plan.contacts) == ("step", "soft") for plan in world.plans)
+            now.step((1.0 if is_soft else _SHORT) * world.simulation.dt)
             self._copy = self.world = now
 
 
 def with_present_forces(world: World) -> World:
     """Return a world whose joints and contacts have the forces of the present state, for reading only.
 
-    It is the world itself where a step has led to that state. If not, it is a copy that has made a short
+    It is the world itself where a step has led to that state. If not, it is a copy that has made a
     step: entities have the same numbers there, and maybe other rows. Systems that do not act within a step
     have no part in it. Where it cannot be made it is the world itself (``forces_known`` tells), and its next
     step says why.

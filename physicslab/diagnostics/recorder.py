@@ -14,20 +14,22 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Transform, Velocity
 from physicslab.diagnostics.energy import Booked, measure_energy, read_books
 from physicslab.diagnostics.figures import Figures
 from physicslab.diagnostics.impact_table import NO_IMPACTS, ImpactReader, impact_table
 from physicslab.diagnostics.run_report import body_names
 from physicslab.diagnostics.samples import Record, quoted
+from physicslab.ecs.component import COMPONENTS
 from physicslab.ecs.conditions import Condition
 from physicslab.ecs.fields import Field, InvalidValue
 from physicslab.ecs.quantity_text import InvalidText
 from physicslab.state.run import BODY_COLUMNS, Column, Run
-from physicslab.state.samples import Samples
+from physicslab.state.samples import Samples, moving_rows, put_motion
 from physicslab.stepping.breaks import first_time
 from physicslab.stepping.keyframe import Keyframe
 from physicslab.stepping.run import RunLength, run_length, strides_as_it_goes
+from physicslab.systems.breaking import BreakSystem, breaks_of
+from physicslab.systems.joint import remove_joint
 from physicslab.world import World
 
 _log = logging.getLogger(__name__)
@@ -57,7 +59,7 @@ def record(
     world.synchronise()
     with world.active():
         names = body_names(world)
-    begin, reader = read_books(world), ImpactReader(world)
+    begin, reader, frame = read_books(world), ImpactReader(world), Keyframe(world)
     reads, world.contacts.read = world.contacts.read, True
     records: list[NDArray[Any]] = []
     found: float | None = None
@@ -71,7 +73,7 @@ def record(
     moving = world.entity_index.entities[samples.rows].tolist()
     return Run(
         samples.times[: samples.count], samples.motion[: samples.count],
-        tuple(names[entity] for entity in moving), found, _Replay(world, records, begin),
+        tuple(names[entity] for entity in moving), found, _Replay(world, records, begin, frame),
     )  # fmt: skip
 
 
@@ -244,36 +246,50 @@ class _Replay:
         The impacts.
     begin : Booked
         The books at the beginning.
+    frame : Keyframe
+        The world at the beginning: with the joints that broke since.
     """
 
-    def __init__(self, world: World, records: list[NDArray[Any]], begin: Booked) -> None:
+    def __init__(self, world: World, records: list[NDArray[Any]], begin: Booked, frame: Keyframe) -> None:
         self._records, self._books = records, (begin, read_books(world))
-        self._frame, self._name = Keyframe(world), world.title or world.name
+        self._frame, self._name = frame, world.title or world.name
+        frame.take_records(world)
         self._systems = world.schedule.systems[1:]
+        self._broken = breaks_of(self._systems, world.time)
         self._view = world.view
         self._made: World | None = None
+        self._whole: Keyframe | None = None
 
     def __getstate__(self) -> dict[str, Any]:
         """Return what goes to another process: the copy itself, as worlds do."""
-        kept = {"_records": self._records, "_books": self._books}
-        return {"_name": self._name, "_made": self._copy(), **kept}
+        kept = {"_records": self._records, "_books": self._books, "_broken": self._broken}
+        return {"_name": self._name, "_made": self._copy(), "_whole": None, **kept}
 
     def _copy(self) -> World:
+        """Return the copy as at the beginning, with what has been recorded since."""
         if self._made is None:
             self._made = World(systems=[system.fresh() for system in self._systems])
             self._frame.fill(self._made)
             self._made.view = self._view
+        if self._whole is None:
+            self._whole = Keyframe(self._made)
+        else:
+            self._whole.restore(self._made)
+        for system in self._made.schedule.systems:
+            if isinstance(system, BreakSystem):
+                system.broken = self._broken
         return self._made
 
     def _instants(self, run: Run) -> Iterator[World]:
-        """Yield the copy at each instant."""
-        world = self._copy()
-        transform, velocity = world.table(Transform), world.table(Velocity)
-        rows = world.batch(Transform, Velocity).rows
+        """Yield the copy at each instant, with the joints that are not broken by then."""
+        world, broken = self._copy(), [one for one in self._broken if one.time > run.times[0]]
         for time, bodies in zip(run.times.tolist(), run.motion, strict=True):
             world.time = time
-            transform["position"][rows], velocity["linear"][rows] = bodies[:, 0:2], bodies[:, 3:5]
-            transform["angle"][rows], velocity["angular"][rows] = bodies[:, 2], bodies[:, 5]
+            while broken and broken[0].time <= time:
+                with world.active():
+                    remove_joint(broken[0].entity, COMPONENTS[broken.pop(0).kind])
+                world.synchronise()
+            put_motion(world, moving_rows(world), bodies)
             yield world
 
     def impacts(self) -> dict[str, NDArray[Any]]:

@@ -4,18 +4,35 @@ import bisect
 import re
 from collections.abc import Iterable
 from keyword import iskeyword
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from physicslab.components.quantities import QUANTITIES, carrier_of, why_not_of
 from physicslab.diagnostics.impact_table import ImpactReader
 from physicslab.diagnostics.quantities import Reading
 from physicslab.ecs.quantity_text import Expression, InvalidText
 from physicslab.ecs.text import suggestion
+from physicslab.state.samples import motion_of_rows, moving_rows, put_motion
+from physicslab.systems.within_step import split_at_impacts
 from physicslab.world import World
 
 _LISTED = 20
 """Names of entities that a refusal lists."""
 COLLISIONS = "world.collisions"
 """The number of impacts since the run began."""
+_BOTH_SIDES = {
+    "x": ("center_{}x", "center_{}x"), "y": ("center_{}y", "center_{}y"), "angle": ("angle_{}", "angle_{}"),
+    "velocity x": ("before_{}x", "after_{}x"), "velocity y": ("before_{}y", "after_{}y"),
+    "angular velocity": ("before_w{}", "after_w{}"),
+}  # fmt: skip
+"""Fields of IMPACT that have a quantity of a body just before an impact and just after it."""
+_OF_MOTION = ("speed", "momentum", "angular momentum", "kinetic", "potential", "energy of", "total energy")
+"""The beginnings of other quantities that the motion of bodies tells."""
+_MANY = 500
+"""Impacts of a step times bodies beyond which the world is not read at each, which takes as long as many
+steps do: of what so many change little by little there is a straight line through the step."""
 _NAMES = {quantity.column.replace(" ", "_"): name for name, quantity in QUANTITIES.items()}
 """Quantities as expressions call them: ``vx``, ``kinetic``, ``energy``."""
 
@@ -87,6 +104,8 @@ class Record:
     breaks : dict of str to list of float
         When impacts end the curve of a quantity [s], as far as the world logs them (``contacts.read``): those
         of the body, and all of what joints hold and of the world.
+    sides : dict of str to dict of float to tuple of two floats
+        The value [SI] just before such an impact and just after it, by its time, where the log has it.
     """
 
     def __init__(self, world: World, names: Iterable[str]) -> None:
@@ -100,6 +119,13 @@ class Record:
             entity, quantity = quantity_of(name, ids)
             self._sources.append((quantity, None if entity is None else ids[entity]))
         self.breaks: dict[str, list[float]] = {name: [] for name in self.columns}
+        self.sides: dict[str, dict[float, tuple[float, float]]] = {name: {} for name in self.columns}
+        self._derived = [
+            (name, *source)
+            for name, source in zip(self.columns, self._sources, strict=True)
+            if source[0].startswith(_OF_MOTION)
+        ]
+        self._before: tuple[float, NDArray[np.int64], NDArray[np.float64]] | None = None
         self.dimensions = {name: Expression(unit_of(name)).value().dimension for name in self.columns}
 
     @property
@@ -110,8 +136,11 @@ class Record:
     def clear(self) -> None:
         """Forget all samples, for another run of the same world."""
         self._impacts.skip()
+        self._before = None
         for numbers in (self.times, *self.columns.values(), *self.breaks.values()):
             numbers.clear()
+        for sides in self.sides.values():
+            sides.clear()
 
     def take(self, times: list[float], columns: Iterable[list[float]]) -> None:
         """Take samples from elsewhere: times [s], and as many values of each column [SI]."""
@@ -120,15 +149,59 @@ class Record:
         self._note_impacts()
 
     def _note_impacts(self) -> None:
-        """Note when impacts were since the last time."""
+        """Note when impacts were since the last time, and the motion before and after each."""
         for records in self._impacts.read():
             joints, entities = self._world.joints.joints, self._world.entity_index.entities
             held = {int(entities[row]) for joint in joints for row in (joint.a, joint.b)}
-            columns = (records[name].tolist() for name in ("time", "entity_a", "entity_b"))
-            for time, *pair in zip(*columns, strict=True):
-                for breaks, (_, body) in zip(self.breaks.values(), self._sources, strict=True):
+            for record in records:
+                time, pair = float(record["time"]), [int(record[name]) for name in ("entity_a", "entity_b")]
+                for (name, breaks), (quantity, body) in zip(self.breaks.items(), self._sources, strict=True):
                     if (body in (None, *pair) or body in held) and time not in breaks[-1:]:
                         bisect.insort(breaks, time)
+                    if body in pair and quantity in _BOTH_SIDES:
+                        which = "ab"[pair.index(body)]
+                        values = (float(record[field.format(which)]) for field in _BOTH_SIDES[quantity])
+                        before, after = values
+                        before, _ = self.sides[name].get(time, (before, after))
+                        self.sides[name][time] = before, after
+            if self._before is not None and self._before[0] < self._world.time:
+                self._note_derived(records, held, *self._before)
+
+    def _note_derived(
+        self, impacts: NDArray[Any], held: set[int], begin: float, rows: NDArray[np.int64],
+        before: NDArray[np.float64],
+    ) -> None:  # fmt: skip
+        """Note quantities that the motion of bodies tells, before and after impacts of the last step.
+
+        The motion of bodies that joints hold is not known then.
+        """
+        world = self._world
+        concerned = [body for _, _, body in self._derived if body is not None]
+        if len(concerned) == len(self._derived):
+            struck = [np.isin(impacts[name], concerned) for name in ("entity_a", "entity_b")]
+            impacts = impacts[struck[0] | struck[1]]
+        elif len(impacts) * len(rows) > _MANY:
+            return
+        if not np.array_equal(rows, moving_rows(world)):
+            return
+        now, last, bodies = world.time, motion_of_rows(world, rows), world.entity_index.entities[rows]
+        begins, spans, motion = split_at_impacts(
+            impacts, bodies, np.array([begin]), np.array([now - begin]), np.stack((before, last))
+        )
+        pairs = {float(one["time"]): {int(one["entity_a"]), int(one["entity_b"])} for one in impacts}
+        try:
+            for k in np.flatnonzero(spans == 0.0).tolist():
+                time, found = float(begins[k]), []
+                for whole in motion[k : k + 2]:
+                    put_motion(world, rows, whole)
+                    reading = Reading(world)
+                    found.append([reading.value(quantity, body) for _, quantity, body in self._derived])
+                for (name, _, body), *values in zip(self._derived, *found, strict=True):
+                    if time in self.breaks[name] and not held & (pairs[time] if body is None else {body}):
+                        first, _ = self.sides[name].get(time, values)
+                        self.sides[name][time] = first, values[1]
+        finally:
+            put_motion(world, rows, last)
 
     def add(self) -> None:
         """Take a sample of the world as it is now."""
@@ -138,6 +211,9 @@ class Record:
             return
         self._note_impacts()
         reading = Reading(self._world)
+        if self._derived:
+            rows = moving_rows(self._world)
+            self._before = self.end, rows, motion_of_rows(self._world, rows)
         for column, (quantity, body) in zip(self.columns.values(), self._sources, strict=True):
             value = self._world.collisions if quantity == "collisions" else reading.value(quantity, body)
             column.append(float(value))

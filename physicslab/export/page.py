@@ -23,8 +23,8 @@ _SCRIPTS = ("run.js", "bodies.js", "picture.js", "figures.js", "controls.js", "l
 """The player, in order: one script, whose parts see the names of those before; the last is for lessons."""
 _SAID = re.compile(r'\bsay\("([^"]+)"\)|\{\{say:([^}]+)\}\}')
 """A text of the player in its scripts, and in its page."""
-
-
+_OF_STEPS = ("acceleration", "force", "net force", "joint")
+"""The beginnings of quantities that soft contacts have a share in: it is that of the last substep."""
 _WORDS = {"linear": "velocity", "angular": "angular velocity"}
 """Labels of fields whose names are not clear without their components."""
 
@@ -160,11 +160,15 @@ def run_document(
 
 
 def page_of(instants: Iterable[World], name: str) -> bytes:
-    """Return the page that plays a world at one instant after another, in UTF-8; it has no accounts then."""
+    """Return the page that plays a world at one instant after another, in UTF-8; it has no accounts then.
+
+    Nor has it forces that soft contacts have a share in, but at an instant to which a step has led.
+    """
     recorder: RunRecorder | None = None
     for world in instants:
         recorder = recorder or RunRecorder(world)
-        recorder.write(world, measure_account(world).unknown)
+        is_known = world.forces_known or (world.plan.collisions, world.plan.contacts) != ("step", "soft")
+        recorder.write(world, measure_account(world).unknown, () if is_known else _OF_STEPS)
     assert recorder is not None
     return page(world, name, [run_document(world, recorder, [])])
 

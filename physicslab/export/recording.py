@@ -69,8 +69,8 @@ class RunRecorder:
         self.joints = joints_of(world)
         self._instants: list[Columns] = []
 
-    def write(self, world: World, account: Accounts) -> None:
-        """Keep the state as it is now.
+    def write(self, world: World, account: Accounts, unknown: tuple[str, ...] = ()) -> None:
+        """Keep the state as it is now, without quantities whose names begin with an ``unknown`` word.
 
         Raises
         ------
@@ -82,7 +82,12 @@ class RunRecorder:
         stored = [energy.potential.get(name, 0.0) for name in self._potentials]
         sums = [world.time - self.start, energy.kinetic, *stored, energy.total]
         reading = Reading(world, account)
-        others = np.array([reading.value(name, body) for body, name in self.quantities])
+        others = np.array(
+            [
+                math.nan if name.startswith(unknown) else reading.value(name, body)
+                for body, name in self.quantities
+            ]
+        )
         others[~(np.abs(others) <= _LARGEST)] = np.nan  # where it is not defined
         bodies = np.column_stack(
             (transform["position"][rows], transform["angle"][rows], velocity["linear"][rows],

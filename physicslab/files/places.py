@@ -145,8 +145,9 @@ def find_place(
 
 def no_part(words: str, spec: Field, letter: str, value: str) -> str:
     """Return why a field has not the part that was named."""
-    allowed = "a number, or a part of a vector" if spec.kind != "vector" else "a part of it, .x or .y"
-    return f"{words}{_given(value)}: must be {allowed}; it has no .{letter}"
+    name = spec.name
+    allowed = f"{name}.x or {name}.y" if spec.kind == "vector" else "a number, or a part of a vector"
+    return f"{words}.{letter}{_given(value)}: must be {allowed}"
 
 
 def read_path(

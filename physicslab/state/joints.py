@@ -248,6 +248,7 @@ class Joints:
         """Give back what :meth:`kept` yielded; what no joint of now has is dropped."""
         held = {(entity, kind): impulses for entity, kind, impulses in kept}
         self.impulse[:] = 0.0
+        self.buffers[0][:] = 0.0  # gradients: they are found again, where bodies are then
         for joint in self.joints:
             impulses = held.get((joint.entity, joint.kind.__name__), ())
             if len(impulses) == joint.size:

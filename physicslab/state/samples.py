@@ -189,6 +189,13 @@ def motion_of_rows(state: Entities, rows: NDArray[np.int64]) -> NDArray[np.float
     return found
 
 
+def put_motion(state: Entities, rows: NDArray[np.int64], motion: NDArray[np.float64]) -> None:
+    """Put x, y [m], the angle [rad] and their rates of rows (n, 6) into the columns."""
+    transform, velocity = state.table(Transform), state.table(Velocity)
+    transform["position"][rows], velocity["linear"][rows] = motion[:, 0:2], motion[:, 3:5]
+    transform["angle"][rows], velocity["angular"][rows] = motion[:, 2], motion[:, 5]
+
+
 def sampled(samples: Samples | None, time: float, span: float, steps: int) -> tuple[Any, ...]:
     """Return what a compiled loop takes of ``steps`` steps of ``span`` seconds from a time [s] on.
 

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from physicslab.kernels.accounts import GRAVITY
 from physicslab.kernels.sleep import edits, islands
 
 
@@ -26,6 +27,8 @@ class Sleep:
         How long [s] each of the others has been slow, and its lowest speed [m/s] in that time.
     forces : float64 array (rows, 3)
         Forces [N] and torque [N m] on each sleeping body; NaN where they are not known yet.
+    other : int
+        The cause by which those are booked that are not uniform gravity.
     on : bool
         Whether bodies of this world may sleep.
     unverified : bool
@@ -57,6 +60,7 @@ class Sleep:
         self.asleep: NDArray[np.bool_] = np.zeros(1, np.bool_)
         self.rest, self.slowest = np.zeros(1), np.zeros(1)
         self.forces: NDArray[np.float64] = np.zeros((1, 3))
+        self.other = GRAVITY
         self.kept: NDArray[np.float64] = np.zeros((1, edits.FIGURES))
         self.known: NDArray[np.bool_] = np.zeros(1, np.bool_)
         self.entities: NDArray[np.int64] = np.zeros(1, np.int64)

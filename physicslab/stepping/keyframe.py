@@ -164,9 +164,8 @@ class Keyframe:
         self._forces: _Columns = shared(
             (world.bodies.force, world.bodies.torque), last._forces if last is not None else None
         )
-        self._own: dict[str, _Columns] = {
-            system.name: kept for system in world.schedule.running if (kept := system.keep())
-        }
+        self._own: dict[str, _Columns] = {}
+        self.take_records(world)
         parts = {} if last is None else {entities.tobytes(): part for entities, part in last._islands}
         self._islands: list[tuple[_Array, Keyframe]] = []
         self._apart_until = world.islands.apart_until
@@ -177,6 +176,11 @@ class Keyframe:
         self._contacts: KeptContacts = KeptContacts.of(world.contacts, before[0])
         self._sleep: KeptSleep = KeptSleep.of(world.sleep, before[1])
         self._joints = list(world.joints.kept())
+
+    def take_records(self, world: Kept) -> None:
+        """Keep what the systems of a world have recorded by now."""
+        assert isinstance(world, State)
+        self._own = {system.name: kept for system in world.schedule.running if (kept := system.keep())}
 
     def arrays(self) -> Iterator[_Array]:
         """Yield every array, for the memory that they take."""

@@ -3,7 +3,7 @@
 import math
 from typing import Any
 
-from physicslab.contacts.islands import keep_places
+from physicslab.contacts.islands import keep_places, measure_joints
 from physicslab.contacts.near_pairs import refill
 from physicslab.ecs.sentences import sentence
 from physicslab.kernels.accounts import CONTACT, ENERGY
@@ -86,6 +86,8 @@ class Soft(Stepper):
         factor = max(contacts.substep_factor, falls_far(state, h / parts))
         state.substeps = factor * state.simulation.substeps
         refill(state)
+        if state.sleep.count:
+            measure_joints(state)
         rested = min(h, state.simulation.dt)  # of a divided step only the end is observed
         finer = contacts.substep_factor if unequal else 0
         span = Span(parts * state.substeps, h / parts / state.substeps, h, state.time, rested, finer)

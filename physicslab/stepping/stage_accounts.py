@@ -58,7 +58,7 @@ class StageAccounts:
         others = [force for force, g in zip(forces, uniform, strict=True) if g is None]
         free = [force for force in others if force.potential is None]
         springs = any(isinstance(force, SpringSystem) for force in others)
-        self.other = next((force.account for force in (*free, *others)), GRAVITY)
+        self.other = state.sleep.other = next((force.account for force in (*free, *others)), GRAVITY)
         self.moves_against = bool(others)
         # Momentum is booked to one cause by kernels: what is another's is then noted by itself.
         self._storing, others = (
@@ -107,8 +107,8 @@ class StageAccounts:
 
     def book_causes(self, state: State, h: float) -> None:
         """Book the impulses within ``h`` seconds of forces that kernels book to the cause of others."""
-        kicked = (state.bodies.awake_inverse_mass > 0.0) & ~state.bodies.sub_integrated
-        turned, position = kicked & (state.bodies.awake_inverse_inertia > 0.0), None
+        kicked = (state.bodies.inverse_mass > 0.0) & ~state.bodies.sub_integrated
+        turned, position = kicked & (state.bodies.inverse_inertia > 0.0), None
         for force in self._apart:
             position = state.table(Transform)["position"] if position is None else position
             n, pull = len(kicked), h * self._pulls[force]

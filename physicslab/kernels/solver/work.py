@@ -328,21 +328,27 @@ def book_gravity(
 
 @kernel
 def book_held(
-    position: Vectors, mass: Numbers, inverse_mass: Numbers, awake_inverse_mass: Numbers, gx: float,
-    gy: float, h: float, nodes: Tables, body: Rows, gradient: Vectors, impulse: Numbers, share: float,
-    account: Vectors,
+    position: Vectors, mass: Numbers, inverse_mass: Numbers, awake_inverse_mass: Numbers, forces: Vectors,
+    uniform: bool, gx: float, gy: float, other: int, h: float, nodes: Tables, body: Rows, gradient: Vectors,
+    impulse: Numbers, share: float, account: Vectors,
 ) -> None:  # fmt: skip
-    """Book that gravity pulls bodies that sleep for ``h`` seconds, and joints and contacts hold them.
+    """Book that forces pull bodies that sleep for ``h`` seconds, and joints and contacts hold them.
 
+    The ``forces`` and torques (rows, 3) but for gravity are booked to ``other``, unless all are ``uniform``.
     The fixed ends of joints give a ``share`` of their last impulses, and contacts what is left.
     """
-    px, py, spin, x, y, turn = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    px, py, spin, x, y, turn, ox, oy, around = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for i in range(len(mass)):
         if inverse_mass[i] > 0.0 and awake_inverse_mass[i] == 0.0:
             jx, jy = h * mass[i] * gx, h * mass[i] * gy
             px += jx
             py += jy
             spin += position[i, 0] * jy - position[i, 1] * jx
+            if not uniform and forces[i, 0] == forces[i, 0]:
+                jx, jy = h * forces[i, 0] - jx, h * forces[i, 1] - jy
+                ox += jx
+                oy += jy
+                around += position[i, 0] * jy - position[i, 1] * jx + h * forces[i, 2]
     for k in range(len(nodes) - 1):
         row = nodes[k, B.ROW]
         first, second = share * impulse[row], 0.0
@@ -359,7 +365,8 @@ def book_held(
                 turn += position[i, 0] * jy - position[i, 1] * jx
     book(account[GRAVITY], 0, 0.0, px, py, spin)
     book(account[JOINTS], 0, 0.0, x, y, turn)
-    book(account[CONTACT], 0, 0.0, -(px + x), -(py + y), -(spin + turn))
+    book(account[other], 0, 0.0, ox, oy, around)
+    book(account[CONTACT], 0, 0.0, -(px + x + ox), -(py + y + oy), -(spin + turn + around))
 
 
 @kernel

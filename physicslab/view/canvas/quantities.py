@@ -4,6 +4,7 @@ import math
 import re
 from collections import Counter
 
+from physicslab.ecs.quantity_text import is_known
 from physicslab.ecs.vector import Vector2
 
 ROUNDING = 1e-12
@@ -11,8 +12,8 @@ ROUNDING = 1e-12
 _LEAST_ERROR, _PLAIN = 1e-12, 3
 """Share of a value from which its error is written, and powers of ten that need no exponent."""
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-_OF_TEN = re.compile(r"(?<![\w.,])(\d[\d.,]*)e(-?)\+?0*(\d+)(?= (?:[^\W\d_]|[%°]))")
-"""The power of ten of a number that has a unit."""
+_OF_TEN = re.compile(r"(?<![\w.,])(\d[\d.,]*)e(-?)\+?0*(\d+)(?= ([^\W\d_]+|[%°]))")
+"""A power of ten, and the word behind it."""
 
 
 def quantity(value: float, unit: str) -> str:
@@ -49,10 +50,15 @@ def with_powers(text: str) -> str:
 
     >>> with_powers("deepest overlap 1.1e-05 m, 2e+07 J"), with_powers("simulation.dt = 1e-05")
     ('deepest overlap 1.1·10⁻⁵ m, 2·10⁷ J', 'simulation.dt = 1e-05')
-    >>> with_powers("box2e3 has 3e-07 µm, 1e5 Ω")
-    'box2e3 has 3·10⁻⁷ µm, 1·10⁵ Ω'
+    >>> with_powers("box2e3 and 2e3 ball have 3e-07 µm, 1e5 N/m")
+    'box2e3 and 2e3 ball have 3·10⁻⁷ µm, 1·10⁵ N/m'
     """
-    return _OF_TEN.sub(lambda found: f"{found[1]}·10{(found[2] + found[3]).translate(_RAISED)}", text)
+
+    def written(found: re.Match[str]) -> str:
+        is_quantity = found[4] == "%" or is_known(found[4])
+        return f"{found[1]}·10{(found[2] + found[3]).translate(_RAISED)}" if is_quantity else found[0]
+
+    return _OF_TEN.sub(written, text)
 
 
 def without_turns(degrees: float) -> float:
