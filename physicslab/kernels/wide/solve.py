@@ -90,7 +90,7 @@ class ContactSpring[N: (float, Wide)](NamedTuple):
 def spring_of[N: (float, Wide)](mass: N, separation: N, size: N, soft: SoftConstraint) -> ContactSpring[N]:
     """Return the spring of a point, by its effective mass [kg] and the size of the smaller body [m].
 
-    What overlaps is held by a stiff, overdamped spring that corrects ``push_rate`` of the overlap a second,
+    An overlap is held by a stiff, overdamped spring that corrects ``push_rate`` of the overlap a second,
     no faster than balances twice the load: else a pile of overlapping bodies would burst. Bodies that are
     apart may close the separation within the substep, and not more. Deep overlap gives way to what no force
     presses: a driven body would press what it cannot move ever harder, until that flies to the side.
