@@ -4,7 +4,7 @@ import pygame
 import pytest
 from desk import SETTLED, bits, click, sized, tap
 
-from physicslab import describe, load_scene
+from physicslab import PhysicsConfig, describe, load_scene
 from physicslab.components import Mass, Rod, Shape, Transform, Velocity
 from physicslab.scenes import SCENES
 from physicslab.world import World
@@ -41,6 +41,16 @@ def test_what_moves_how_and_what_holds_it_is_told() -> None:
     )
     assert f"Rod between {world.label(one)} and {world.label(other)}." in words
     assert f"Rod between {world.label(one)} and a fixed point." in words
+
+
+def test_rounding_is_no_place_and_a_slow_world_is_not_at_rest() -> None:
+    """A plank in balance was at x = 5.046e-16 m, and all of what swims in a drop of water at rest."""
+    world = World(physics=PhysicsConfig(gravity_mode="none"))
+    world.spawn(Transform((5e-16, 2e-6)), Velocity((3e-7, 0.0), 0.0), Mass(1e-15))
+    world.spawn(Transform((5e-16, 4.0)), Velocity(), Mass(1e-15))
+    slow, still = describe(world).splitlines()[2:4]
+    assert slow.endswith("at x = 0 m, y = 2e-06 m; it moves at 3e-07 m/s to the right.")
+    assert still.endswith("at x = 0 m, y = 4 m; it is at rest.")
 
 
 @pytest.mark.parametrize("name", SCENES)

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from physicslab import World, cli, load_scene, save_scene
 from physicslab.components import (
     Drag,
+    Gate,
     Graph,
     GraphLine,
     Mass,
@@ -169,6 +170,16 @@ def test_the_page_of_a_recorded_run_shows_a_joint_until_it_breaks() -> None:
         force = columns[:, 1 + len(read["energies"]) + 3]
         assert (np.isfinite(force) == (columns[:, 0] < rope["until"])).all()
         run = pickle.loads(pickle.dumps(run))
+
+
+def test_the_page_of_a_run_of_another_process_has_what_crossed_its_gates() -> None:
+    world = World()
+    circle(world, (0.0, 3.0), radius=0.1, name="ball")
+    world.spawn(Gate((-1.0, 2.0), (1.0, 2.0)))
+    run = world.record(1.0)
+    pages = [document(one.page())["gates"] for one in (run, pickle.loads(pickle.dumps(run)))]
+    assert len(pages[0][0]["crossings"]) == 1
+    assert pages[0] == pages[1]
 
 
 def test_the_page_of_a_recorded_run_has_no_forces_of_soft_contacts() -> None:

@@ -1,7 +1,7 @@
 """A world in words, for who cannot see it: what is there, where it is, how it moves, and its energies."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from physicslab.components import Gear, Mass, Shape, Spring, Transform, Velocity
 from physicslab.diagnostics.energy import measure_energy, measure_momentum
@@ -18,7 +18,7 @@ _LISTED = 30
 _ZERO_SUM_SHARE = 1e-12
 """Share of what is usual in a world from which on a sum is no rounding."""
 _REST = 1e-6
-"""Slower than this counts as rest [m/s, rad/s]."""
+"""Slower than this counts as rest [m/s, rad/s]; in a slow world, than this share of what is usual there."""
 
 
 def describe(world: World, code: str = "en") -> str:
@@ -61,8 +61,9 @@ def _lines(world: World, own: Language) -> Iterator[str]:
         "t = {time} s. {moving}, {fixed}.", time=_number(world.time, own), moving=can_move, fixed=fixed
     )
     yield _gravity(world, own)
+    scales = scales_of(world)
     for body in bodies[:_LISTED]:
-        yield _body(world, body, own)
+        yield _body(world, body, own, scales)
     kinds: tuple[type[Component], ...] = (Spring, *KINDS)
     joints = [(one, kind) for kind in kinds for one in world.batch(kind).entities.tolist()]
     for entity, kind in joints[:_LISTED]:
@@ -71,7 +72,6 @@ def _lines(world: World, own: Language) -> Iterator[str]:
     left_out = max(len(bodies) - _LISTED, 0) + max(len(joints) - _LISTED, 0)
     if left_out:
         yield own.say_count("And {n} more.", "And {n} more.", left_out)
-    scales = scales_of(world)
     energy, momentum = measure_energy(world), measure_momentum(world).linear
     yield own.say(
         "Kinetic energy {kinetic} J, potential energy {potential} J, together {total} J.",
@@ -105,10 +105,10 @@ def _gravity(world: World, own: Language) -> str:
     return own.say("Gravity is {size} m/s² {way}.", size=acceleration, way=way)
 
 
-def _body(world: World, body: int, own: Language) -> str:
+def _body(world: World, body: int, own: Language, scales: Mapping[str, float]) -> str:
     """Return what a body is, where it is, and how it moves."""
     place = world.component(body, Transform).position
-    x, y = _number(place.x, own), _number(place.y, own)
+    x, y = _number(place.x, own, scales["m"]), _number(place.y, own, scales["m"])
     name, shape = world.label(body), own.say("point without outline")
     if world.has(body, Shape):
         shape = _shape(world.component(body, Shape), own)
@@ -117,9 +117,10 @@ def _body(world: World, body: int, own: Language) -> str:
     mass = own.say("infinitely heavy")
     if world.has(body, Mass):
         mass = f"{_number(world.component(body, Mass).mass, own)} kg"
+    motion = _motion(world.component(body, Velocity), own, scales)
     return own.say(
         "{name}: {shape}, {mass}, at x = {x} m, y = {y} m; it {motion}.",
-        name=name, shape=shape, mass=mass, x=x, y=y, motion=_motion(world.component(body, Velocity), own),
+        name=name, shape=shape, mass=mass, x=x, y=y, motion=motion,
     )  # fmt: skip
 
 
@@ -141,16 +142,17 @@ def _shape(shape: Shape, own: Language) -> str:
     return own.say_count("polygon of {n} corner", "polygon of {n} corners", len(shape.vertices))
 
 
-def _motion(velocity: Velocity, own: Language) -> str:
+def _motion(velocity: Velocity, own: Language, scales: Mapping[str, float]) -> str:
     """Return how fast a body moves, where to, and how fast it turns."""
+    rest, still = (_REST * min(scales[unit], 1.0) for unit in ("m/s", "rad/s"))
     speed, spin = velocity.linear.magnitude, velocity.angular
     parts = []
-    if speed >= _REST:
+    if speed > rest:
         way = _way(velocity.linear, own)
         parts.append(own.say("moves at {speed} m/s {way}", speed=_number(speed, own), way=way))
-    if spin >= _REST:
+    if spin > still:
         parts.append(own.say("turns at {spin} rad/s counter-clockwise", spin=_number(spin, own)))
-    elif spin <= -_REST:
+    elif spin < -still:
         parts.append(own.say("turns at {spin} rad/s clockwise", spin=_number(-spin, own)))
     return own.say("{one} and {other}", one=parts[0], other=parts[1]) if len(parts) > 1 else (
         parts[0] if parts else own.say("is at rest")

@@ -261,9 +261,20 @@ class _Replay:
         self._whole: Keyframe | None = None
 
     def __getstate__(self) -> dict[str, Any]:
-        """Return what goes to another process: the copy itself, as worlds do."""
+        """Return what goes to another process: the copy, as worlds do, and what its systems recorded."""
         kept = {"_records": self._records, "_books": self._books, "_broken": self._broken}
-        return {"_name": self._name, "_made": self._copy(), "_whole": None, **kept}
+        made = self._copy()
+        seen = {system.name: own for system in made.schedule.running if (own := system.keep())}
+        return {"_name": self._name, "_made": made, "_whole": None, "_seen": seen, **kept}
+
+    def __setstate__(self, kept: dict[str, Any]) -> None:
+        seen = kept.pop("_seen")
+        self.__dict__.update(kept)
+        made = kept["_made"]
+        made.synchronise()
+        for system in made.schedule.running:
+            if system.name in seen:
+                system.restore(seen[system.name])
 
     def _copy(self) -> World:
         """Return the copy as at the beginning, with what has been recorded since."""
