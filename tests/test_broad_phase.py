@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from physicslab import load_scene
 from physicslab.components import Mass, Material, Pin, Shape, Transform, Velocity
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
-from physicslab.kernels.broad import leaving
+from physicslab.kernels.broad import grid, leaving
 from physicslab.prefabs import gas
 from physicslab.systems import broad_phase
 from physicslab.systems.broad_phase import BroadPhaseSystem
@@ -312,3 +312,23 @@ def test_bodies_of_many_sizes_are_all_found_by_their_cells() -> None:
     assert (sorted_ones, count) == (n, n)
     assert cell < 4.0, "the small ones are in small cells"
     assert sorted(body.tolist()) == list(range(n))
+
+
+@pytest.mark.parametrize("far", [60.0, 1e5])
+def test_the_same_pairs_are_found_where_cells_are_shared_by_a_hash(far: float) -> None:
+    """A body that is far out makes cells too many for a bucket each; what spans some cells looks at these."""
+    chance, n = np.random.default_rng(5), 300
+    boxes, fat = np.zeros((n, 4)), np.zeros((8, n))
+    boxes[:, :2] = chance.uniform(0.0, 8.0, (n, 2))
+    boxes[0, :2] = far
+    boxes[:, 2:] = boxes[:, :2] + chance.choice((0.1, 0.3, 0.9), (n, 1), p=(0.7, 0.2, 0.1))
+    pairs, couples = np.zeros((8, 3), np.int64), np.zeros(2 * 8192, np.uint32)
+    found, walls, crowded = grid.find_pairs(
+        boxes, fat, np.ones(n, np.int64), np.ones(n), False, np.zeros(4), pairs, couples
+    )
+    low, high = boxes[:, None, :2], boxes[:, None, 2:]
+    meet = ((low <= boxes[None, :, 2:]) & (boxes[None, :, :2] <= high)).all(axis=2)
+    expected = {(i, j) for i, j in np.argwhere(meet).tolist() if i < j}
+    listed = np.sort(couples[: 2 * found].reshape(-1, 2), axis=1).tolist()
+    assert (walls, crowded) == (0, False) and len(listed) == len(expected) > 100
+    assert {(i, j) for i, j in listed} == expected

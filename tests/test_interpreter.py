@@ -28,7 +28,7 @@ from both_tiers import compared, name_of, same_bits
 from desk import bits
 
 from physicslab.components import Mass, Molecule, Shape, Transform, Velocity
-from physicslab.contacts.arguments import inverse_in, motion_of, near_in
+from physicslab.contacts.arguments import motion_of, near_in
 from physicslab.desktop import compiling
 from physicslab.desktop.compiling import INTERPRETING_LIMIT, SmallScenes
 from physicslab.diagnostics.energy import measure_account, measure_energy
@@ -383,15 +383,15 @@ def lone_sweeps() -> None:
     """Call what runs within an interpreted loop of substeps, on the contacts of a pile that was pushed."""
     world = load_scene("sandbox")
     world.run(steps=3)
-    near, motion, inverse = near_in(world), motion_of(world), inverse_in(world)
-    counts, manifolds, points, _, touching, *_ = near
-    contacts = manifolds, points, touching, int(counts[ACTIVE])
+    motion = motion_of(world)
+    counts, *_, pairs, points = near_in(world)
+    contacts = pairs, points, int(counts[ACTIVE])
     assert contacts[-1] > 10
-    last = np.full(len(inverse[0]), -1)
+    last = np.full(len(motion[1]), -1)
     for number, booked in ((0, True), (1, False)):
         motion[2][...] += 0.1
         stirred = number, number - 1, last
-        sweep_contacts(contacts, motion, inverse, (240.0, 1.0, 0.9, 0.1, 10.0, 0.5, 0.1), stirred, booked)
+        sweep_contacts(contacts, motion, (240.0, 1.0, 0.9, 0.1, 10.0, 0.5, 0.1), stirred, booked)
 
 
 def recorded() -> None:

@@ -244,18 +244,17 @@ def test_the_swaying_of_a_tower_decays_however_often_it_is_swept(iterations: int
 def test_only_contacts_of_bodies_that_impulses_have_changed_are_solved_again() -> None:
     world = load_scene("sandbox")
     world.run(steps=3)
-    near, motion, inverse = near_in(world), motion_of(world), inverse_in(world)
-    counts, manifolds, points, _, touching, *_ = near
-    contacts = manifolds, points, touching, int(counts[ACTIVE])
+    motion, inverse = motion_of(world), inverse_in(world)
+    counts, *_, pairs, points = near_in(world)
+    contacts = pairs, points, int(counts[ACTIVE])
     last, soft = np.zeros(len(inverse[0]), np.int64), (240.0, 1.0, 0.9, 0.1, 10.0, 0.5, 0.1)
     motion[2][...] += 0.1
     before = motion[2].copy()
-    assert sweep_contacts(contacts, motion, inverse, soft, (5, 4, last), True) == (False, 0.0, 0.0)
+    assert sweep_contacts(contacts, motion, soft, (5, 4, last), True) == (False, 0.0, 0.0)
     assert (motion[2] == before).all() and contacts[-1] > 10
-    pair = manifolds[touching[0]]
-    moving = pair["a"] if inverse[0][pair["a"]] > 0.0 else pair["b"]
+    moving = pairs[0]["a"] if pairs[0]["mass_a"] > 0.0 else pairs[0]["b"]
     last[moving] = 4
-    assert sweep_contacts(contacts, motion, inverse, soft, (5, 4, last), True)[0]
+    assert sweep_contacts(contacts, motion, soft, (5, 4, last), True)[0]
     assert last[moving] == 5 and (motion[2][moving] != before[moving]).any()
     unlike = (motion[2] != before).any(axis=1)
     assert 0 < np.count_nonzero(unlike) < len(before) and (last[unlike] == 5).all()

@@ -7,7 +7,7 @@ from physicslab.kernels import Plain
 from physicslab.kernels.arguments import ActingTuple, Bounds, Inverse, Materials, Motion, Near, Softness
 from physicslab.kernels.geometry.shapes import ShapesTuple
 from physicslab.kernels.joints.blocks import Joints
-from physicslab.kernels.records import APART
+from physicslab.kernels.records import APART, CONSTRAINT, CONSTRAINT_POINT
 from physicslab.kernels.solver import soft
 from physicslab.state.samples import NOTHING_SAMPLED
 from physicslab.state.state import State
@@ -65,12 +65,17 @@ def near_in(state: State) -> Plain[Near]:
     if len(contacts.noted) < len(contacts.points):
         contacts.noted = np.zeros((len(contacts.points), 4))
         contacts.apart = np.zeros(len(contacts.manifolds), APART)
+        contacts.constraints = np.empty(
+            len(contacts.manifolds), CONSTRAINT
+        )  # each is written before it is read
+        contacts.constraint_points = np.empty(len(contacts.points), CONSTRAINT_POINT)
     return (
         contacts.counts, contacts.manifolds, contacts.points, contacts.scalar, contacts.touching,
         contacts.wide.discs.slots, contacts.wide.boxes.slots,
         contacts.proximity, contacts.activation_distance, state.entity_index.entities,
         contacts.rotations, state.account.table, contacts.noted, contacts.linear_before,
         contacts.angular_before, contacts.moments, contacts.apart, contacts.travels, contacts.stirred,
+        contacts.constraints, contacts.constraint_points,
     )  # fmt: skip
 
 

@@ -8,7 +8,15 @@ from typing import NamedTuple
 
 from physicslab.kernels import Flags, Numbers, Plain, Rows, Vectors, inlined, inlined_by_numba
 from physicslab.kernels.forces.force_calls import Calls
-from physicslab.kernels.records import Aparts, Couples, Impacts, Manifolds, Points
+from physicslab.kernels.records import (
+    Aparts,
+    ConstraintPoints,
+    ConstraintRecords,
+    Couples,
+    Impacts,
+    Manifolds,
+    Points,
+)
 from physicslab.kernels.wide_layout import Slots
 
 
@@ -69,7 +77,8 @@ class Near(NamedTuple):
     one in the substep, and when it meets the next [s from now] (:mod:`physicslab.kernels.solver.meet_again`).
     Last, how far apart pairs are, and how far bodies have come (5, rows)
     (:mod:`physicslab.kernels.geometry.apart`); and in which sweep impulses changed each body last (rows,)
-    (:mod:`physicslab.kernels.constraint.stirred`).
+    (:mod:`physicslab.kernels.constraint.stirred`). Then how sweeps solve the scalar contacts
+    (:mod:`physicslab.kernels.solver.constraints`).
     """
 
     counts: Rows
@@ -91,6 +100,8 @@ class Near(NamedTuple):
     apart: Aparts
     travels: Vectors
     stirred: Rows
+    constraints: ConstraintRecords
+    constraint_points: ConstraintPoints
 
 
 class Contacts(NamedTuple):
@@ -244,12 +255,12 @@ def named_near(plain: Plain[Near]) -> Near:
     (
         counts, manifolds, points, scalar, touching, discs, boxes, proximity, activation_distance, entities,
         rotations, account, noted, linear_before, angular_before, moments, apart, travels,
-        stirred,
+        stirred, constraints, constraint_points,
     ) = plain  # fmt: skip
     return Near(
         counts, manifolds, points, scalar, touching, Slots(*discs), Slots(*boxes),
         proximity, activation_distance, entities, rotations, account, noted, linear_before, angular_before,
-        moments, apart, travels, stirred,
+        moments, apart, travels, stirred, constraints, constraint_points,
     )  # fmt: skip
 
 

@@ -135,7 +135,12 @@ def _choose_type(context: Any, mask: Any, x: Any, y: Any) -> Any:
     """Return x in the slots where the mask is true, and y in the others."""
 
     def generate(context: Any, build: Any, signature: Any, arguments: Any) -> Any:
-        return build.select(arguments[0], *_alike(build, *arguments[1:]))
+        x, y = (
+            (_spread(build, value) for value in arguments[1:])
+            if mask == _mask
+            else _alike(build, *arguments[1:])
+        )
+        return build.select(arguments[0], x, y)
 
     return (_wide if mask == _mask else _of_kind(x, y))(mask, x, y), generate
 

@@ -57,6 +57,34 @@ POINT = np.dtype(
 )
 """A contact point; the points of pair p are numbers 2 p and 2 p + 1."""
 
+CONSTRAINT = np.dtype(
+    [
+        ("a", np.uint64),  # rows
+        ("b", np.uint64),
+        ("count", np.int64),  # of its points
+        *_floats("normal_x", "normal_y", "friction"),
+        *_floats("mass_a", "inertia_a", "mass_b", "inertia_b"),  # inverse [1/kg, 1/(kg m^2)]
+        ("between", np.float64),  # how a normal impulse at one point changes the approach of the other [1/kg]
+    ]
+)
+"""A contact as sweeps solve it (:mod:`physicslab.kernels.solver.constraints`)."""
+
+CONSTRAINT_POINT = np.dtype(
+    [
+        *_floats("normal_arm_a", "normal_arm_b", "tangent_arm_a", "tangent_arm_b"),  # of moments [m]
+        # How its normal impulse answers: the fields of physicslab.kernels.wide.solve.ContactSpring.
+        *_floats("gain", "closing", "push", "limit", "given", "give"),
+        ("tangent_mass", np.float64),
+        *_floats("between", "across"),  # how much less impulse it takes for each N s of the other's
+        # How its own normal impulse and the other's change the speed at which it slides [1/kg].
+        *_floats("turning", "turned_by_other"),
+        *_floats("normal_impulse", "tangent_impulse"),
+        # After those before bodies moved: the impulses, the speeds along the normal and of sliding.
+        *_floats("noted_normal", "noted_tangent", "noted_speed", "noted_sliding"),
+    ]
+)
+"""A point of one; those of contact k are numbers 2 k and 2 k + 1."""
+
 APART = np.dtype([("clearance", np.float64), ("a", np.uint32), ("b", np.uint32)])
 """How much nearer two rows would have to come to have points [m]; -infinity where that is not known."""
 
@@ -91,6 +119,10 @@ Manifolds = Annotated[NDArray[np.void], from_dtype(MANIFOLD)[::1]]
 """An array of MANIFOLD (n,)."""
 Points = Annotated[NDArray[np.void], from_dtype(POINT)[::1]]
 """An array of POINT (2 n,)."""
+ConstraintRecords = Annotated[NDArray[np.void], from_dtype(CONSTRAINT)[::1]]
+"""An array of CONSTRAINT (n,)."""
+ConstraintPoints = Annotated[NDArray[np.void], from_dtype(CONSTRAINT_POINT)[::1]]
+"""An array of CONSTRAINT_POINT (2 n,)."""
 Aparts = Annotated[NDArray[np.void], from_dtype(APART)[::1]]
 """An array of APART (n,)."""
 Impacts = Annotated[NDArray[np.void], from_dtype(IMPACT)[::1]]
@@ -103,3 +135,7 @@ Manifold = Any
 """One record of MANIFOLD; in compiled code its fields are attributes."""
 Point = Any
 """One record of POINT."""
+Constraint = Any
+"""One record of CONSTRAINT."""
+ConstraintPoint = Any
+"""One record of CONSTRAINT_POINT."""

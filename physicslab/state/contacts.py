@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from physicslab.kernels import compile_kernels, direct_entry, near_counts
 from physicslab.kernels.broad import near_pairs
 from physicslab.kernels.geometry.contact import AS_FOUND
-from physicslab.kernels.records import APART, IMPACT, MANIFOLD, POINT
+from physicslab.kernels.records import APART, CONSTRAINT, CONSTRAINT_POINT, IMPACT, MANIFOLD, POINT
 from physicslab.kernels.solver import impulse
 from physicslab.kernels.wide import refresh, slots
 from physicslab.state.wide_contacts import WideContacts
@@ -163,6 +163,8 @@ class Contacts:
         self.angular_before: NDArray[np.float64] = np.zeros(0)
         self.moments: NDArray[np.float64] = np.zeros((0, 2))
         self.apart: NDArray[Any] = np.zeros(0, APART)
+        self.constraints: NDArray[Any] = np.zeros(0, CONSTRAINT)
+        self.constraint_points: NDArray[Any] = np.zeros(0, CONSTRAINT_POINT)
         self.travels: NDArray[np.float64] = np.zeros((5, 0))
         self.stirred: NDArray[np.int64] = np.zeros(0, np.int64)
         self.table: NDArray[np.int64] = np.zeros(16, np.int64)

@@ -13,6 +13,8 @@ _COMPANY_LIMIT = 32
 """Largest number of overlapping bodies of a body's own size that make pairs with it."""
 _CELL_LIMIT = 1e15
 """Number of the farthest cell: beyond it, float64 does not resolve neighbouring cells."""
+_CELLS_EACH = 32.0
+"""Largest number of cells for each body where every cell has a bucket of its own."""
 _OWN_SIZE = 2.0
 """Ratio of sizes up to which two bodies are of the same size: few such bodies fit beside one."""
 
@@ -146,7 +148,7 @@ def _place(
     # A rim of empty cells, so that every cell has all its neighbours.
     low_x, low_y, high_x, high_y = low_x - 1, low_y - 1, high_x + 1, high_y + 1
     across, up = high_x - low_x + 1, high_y - low_y + 1
-    dense = float(across) * float(up) <= 8.0 * smalls + 64.0
+    dense = float(across) * float(up) <= _CELLS_EACH * smalls + 64.0
     buckets = across * up if dense else 1
     while not dense and buckets < 2 * smalls:
         buckets *= 2
@@ -231,7 +233,7 @@ def _pair_large(
     search: Search, cells: Cells, grid: Grid, smalls: int, larges: Rows, count: int, cell: float, found: int
 ) -> int:
     """Find the pairs of large bodies with small ones; return how many pairs there are now."""
-    boxes, body = search.boxes, grid.body
+    boxes, body, home = search.boxes, grid.body, grid.home
     for k in range(count):
         i = larges[k]
         from_x, to_x = cell_at(boxes[i, 0] / cell - 0.5), cell_at(boxes[i, 2] / cell + 0.5)
@@ -240,16 +242,23 @@ def _pair_large(
         from_y, to_y = max(from_y, cells.low_y), min(to_y, cells.high_y)
         if from_x > to_x or from_y > to_y:
             continue
-        if not cells.dense or float(to_x - from_x + 1) * float(to_y - from_y + 1) > smalls:
+        if float(to_x - from_x + 1) * float(to_y - from_y + 1) > smalls:
             for q in range(smalls):
                 if _overlap(boxes, i, grid.near, q):
                     found = _take(search, found, i, body[q])
             continue
         for ix in range(from_x, to_x + 1):
-            column = (ix - cells.low_x) * cells.up - cells.low_y
-            for q in range(grid.first[column + from_y], grid.first[column + to_y + 1]):
-                if _overlap(boxes, i, grid.near, q):
-                    found = _take(search, found, i, body[q])
+            if cells.dense:
+                column = (ix - cells.low_x) * cells.up - cells.low_y
+                for q in range(grid.first[column + from_y], grid.first[column + to_y + 1]):
+                    if _overlap(boxes, i, grid.near, q):
+                        found = _take(search, found, i, body[q])
+                continue
+            for iy in range(from_y, to_y + 1):
+                at = _bucket(ix, iy, cells)
+                for q in range(grid.first[at], grid.first[at + 1]):
+                    if home[q, 0] == ix and home[q, 1] == iy and _overlap(boxes, i, grid.near, q):
+                        found = _take(search, found, i, body[q])
     return found
 
 

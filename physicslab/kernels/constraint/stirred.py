@@ -6,7 +6,6 @@ So every cluster of bodies comes to its own end, whatever others in the same wor
 from typing import NamedTuple
 
 from physicslab.kernels import Rows, always_inlined, inlined_by_numba
-from physicslab.kernels.arguments import Inverse
 
 SETTLED = 1e-10
 """Share of an impulse by which it may still change where it counts as unchanged."""
@@ -41,7 +40,7 @@ def is_stirred(stirred: Stirred, body: int) -> bool:
 
 
 @always_inlined
-def stir(stirred: Stirred, inverse: Inverse, body: int) -> None:
+def stir(stirred: Stirred, body: int, inverse_mass: float, inverse_inertia: float) -> None:
     """Note that impulses change a body in this sweep, if they can."""
-    if inverse.mass[body] > 0.0 or inverse.inertia[body] > 0.0:
+    if inverse_mass > 0.0 or inverse_inertia > 0.0:
         stirred.last[body] = stirred.sweep

@@ -359,7 +359,8 @@ def sweep_joints(
         if due and _solve_block(joints, block, motion, inverse, soft):
             unsettled = True
             for e in range(first, end):
-                stir(stirred, inverse, joints.body[e])
+                body = joints.body[e]
+                stir(stirred, body, inverse.mass[body], inverse.inertia[body])
     return unsettled
 
 

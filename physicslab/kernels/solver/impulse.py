@@ -2,16 +2,9 @@
 
 import math
 
-from physicslab.kernels import Rows, always_inlined, inlined, kernel
+from physicslab.kernels import Rows, always_inlined, inlined, inlined_by_numba, kernel
 from physicslab.kernels.arguments import Acting, Contacts, Inverse, Motion, Near, Softness
-from physicslab.kernels.constraint.pair import (
-    after_impulse_at,
-    frame_of,
-    inverse_mass_of,
-    point_state,
-    put_velocity,
-    velocity_of,
-)
+from physicslab.kernels.constraint.pair import frame_of, point_state, velocity_of
 from physicslab.kernels.constraint.stirred import stirred_in
 from physicslab.kernels.joints.blocks import Joints
 from physicslab.kernels.joints.soft import (
@@ -27,6 +20,7 @@ from physicslab.kernels.joints.soft import (
 )
 from physicslab.kernels.near_counts import ACTIVE, WIDE_COUNT
 from physicslab.kernels.records import Manifolds, Points
+from physicslab.kernels.solver.constraints import Constraints, constrain, keep_impulses, stretch, warm_start
 from physicslab.kernels.solver.sweep import sweep
 from physicslab.kernels.solver.work import book_relaxed, book_solved, take_means
 from physicslab.kernels.wide.solve import SoftConstraint, sweep_wide, warm_start_wide
@@ -45,26 +39,6 @@ HEAVY_RATIO = 10.0
 """Ratio of masses from which the lighter body of a pair may have to carry many times its weight."""
 MAX_SUBSTEP_FACTOR = 16
 """Largest factor by which substeps are increased for such a pair."""
-
-
-@always_inlined
-def _warm_start(contacts: Contacts, motion: Motion, inverse: Inverse, warm_start_scale: float) -> None:
-    """Apply the impulses of the last substep, ``warm_start_scale`` times as large, at scalar contacts."""
-    for k in range(contacts.number):
-        p = contacts.touching[k]
-        manifold = contacts.manifolds[p]
-        a, b = manifold.a, manifold.b
-        mass, v = inverse_mass_of(inverse, a, b), velocity_of(motion.linear, motion.angular, a, b)
-        for j in range(2 * p, 2 * p + manifold.count):
-            point = contacts.points[j]
-            if point.ahead:
-                point.normal_impulse = point.tangent_impulse = 0.0
-                continue
-            point.normal_impulse *= warm_start_scale
-            point.tangent_impulse *= warm_start_scale
-            at = frame_of(manifold, point)
-            v = after_impulse_at(v, mass, at, point.normal_impulse, point.tangent_impulse)
-        put_velocity(motion.linear, motion.angular, a, b, v)
 
 
 @inlined
@@ -117,6 +91,12 @@ def _soft_constraint(
     )
 
 
+@inlined_by_numba
+def _of(contacts: Contacts, near: Near) -> Constraints:
+    """Return the constraints of contacts."""
+    return Constraints(near.constraints, near.constraint_points, contacts.number)
+
+
 @always_inlined
 def solve(
     contacts: Contacts, near: Near, joints: Joints, motion: Motion, inverse: Inverse, acting: Acting,
@@ -133,20 +113,23 @@ def solve(
         begin_joints(joints, motion, near.rotations, inverse, acting, h)
         warm_start_joints(joints, motion, inverse, warm_start_scale, h)
         factorise_joints(joints, inverse, stiff)
-    _warm_start(contacts, motion, inverse, warm_start_scale)
+    constraints, soft = _of(contacts, near), _soft_constraint(softness, acting, h, sweeps, sunk)
+    constrain(contacts, constraints, inverse, warm_start_scale)
+    stretch(contacts, constraints, soft)
+    warm_start(constraints, motion)
     crowd = near.counts[WIDE_COUNT] > 0
     if crowd:
         warm_start_wide(near, motion, warm_start_scale)
-    soft = _soft_constraint(softness, acting, h, sweeps, sunk)
     for n in range(sweeps):
         stirred = stirred_in(n, near.stirred, crowd)
         if joined:
             loose = sweep_joints(joints, motion, inverse, stiff, stirred)
-        unsettled, _, _ = sweep(contacts, motion, inverse, soft, stirred, False)
+        unsettled, _, _ = sweep(constraints, motion, soft, stirred, False)
         if crowd:
             sweep_wide(near, motion, 0.0, soft, False)
         elif not (unsettled or loose):
             break
+    keep_impulses(contacts, constraints)
     if joined:
         book_work(joints, motion, near.account, True)
         book_momentum(joints, motion, inverse, near.account, True)
@@ -191,11 +174,13 @@ def relax(
     and here: each by the mean velocity of before and after all of them, or in a crowd, which has too many
     points to look at again, of before and after itself.
     """
-    pressed, friction_work = book_solved(contacts, near, motion, inverse, acting, h, half)
+    constraints = _of(contacts, near)
+    pressed, friction_work = book_solved(contacts, constraints, near, motion, inverse, acting, h, half)
     crowd = near.counts[WIDE_COUNT] > 0
     if crowd:
         take_means(near, motion)
     rigid, drift = SoftConstraint(1.0 / h, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0), h
+    stretch(contacts, constraints, rigid)
     joined, loose, stiff = len(joints.impulse) > 0, False, JointSoftness(h, 0.0, 1.0)
     if joined:
         begin_joints(joints, motion, near.rotations, inverse, acting, 0.0)
@@ -209,14 +194,15 @@ def relax(
             if crowd:
                 book_work(joints, motion, near.account, False)
                 book_momentum(joints, motion, inverse, near.account, False)
-        unsettled, push, rub = sweep(contacts, motion, inverse, rigid, stirred, crowd)
+        unsettled, push, rub = sweep(constraints, motion, rigid, stirred, crowd)
         pressed, friction_work = pressed + push, friction_work + rub
         if crowd:
             push, rub = sweep_wide(near, motion, drift, rigid, True)
             pressed, friction_work, drift = pressed + push, friction_work + rub, 0.0
         elif not (unsettled or loose):
             break
-    push, rub = book_relaxed(contacts, near, motion, inverse)
+    keep_impulses(contacts, constraints)
+    push, rub = book_relaxed(constraints, near, motion, inverse)
     if joined and not crowd:
         book_work(joints, motion, near.account, False)
         book_momentum(joints, motion, inverse, near.account, False)

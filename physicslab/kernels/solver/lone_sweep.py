@@ -5,9 +5,10 @@ compiled in a twentieth of the time of :func:`physicslab.kernels.solver.soft.adv
 """
 
 from physicslab.kernels import Plain, kernel
-from physicslab.kernels.arguments import Contacts, Inverse, Motion
+from physicslab.kernels.arguments import Motion
 from physicslab.kernels.constraint.stirred import Stirred
 from physicslab.kernels.python_fallback import native_for
+from physicslab.kernels.solver.constraints import Constraints
 from physicslab.kernels.solver.sweep import sweep
 from physicslab.kernels.wide.solve import SoftConstraint
 
@@ -15,15 +16,8 @@ from physicslab.kernels.wide.solve import SoftConstraint
 @native_for(sweep)
 @kernel
 def sweep_contacts(
-    contacts: Plain[Contacts], motion: Plain[Motion], inverse: Plain[Inverse],
-    soft: Plain[SoftConstraint], stirred: Plain[Stirred], booked: bool,
+    constraints: Plain[Constraints], motion: Plain[Motion], soft: Plain[SoftConstraint],
+    stirred: Plain[Stirred], booked: bool,
 ) -> tuple[bool, float, float]:  # fmt: skip
     """Return what :func:`physicslab.kernels.solver.sweep.sweep` does."""
-    return sweep(
-        Contacts(*contacts),
-        Motion(*motion),
-        Inverse(*inverse),
-        SoftConstraint(*soft),
-        Stirred(*stirred),
-        booked,
-    )
+    return sweep(Constraints(*constraints), Motion(*motion), SoftConstraint(*soft), Stirred(*stirred), booked)

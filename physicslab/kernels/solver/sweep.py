@@ -3,27 +3,23 @@
 from typing import NamedTuple
 
 from physicslab.kernels import always_inlined
-from physicslab.kernels.arguments import Contacts, Inverse, Motion
+from physicslab.kernels.arguments import Motion
 from physicslab.kernels.constraint.pair import (
-    PairInverseMass,
     PairVelocity,
     after_impulse,
-    along_and_across,
-    frame_of,
     impulse_at,
-    inverse_mass_of,
-    moment_arms,
     put_velocity,
-    response,
     velocity_of,
 )
 from physicslab.kernels.constraint.stirred import SETTLED, Stirred, is_stirred, stir
-from physicslab.kernels.records import Manifold, Point
+from physicslab.kernels.float64x8 import greater
+from physicslab.kernels.records import Constraint, ConstraintPoint
+from physicslab.kernels.solver.constraints import Constraints, mass_of, speeds_at, unsigned
 from physicslab.kernels.wide.solve import (
+    ContactSpring,
     SoftConstraint,
-    free_change,
+    free_impulse,
     held_by_friction,
-    one_normal,
     two_frictions,
     two_normals,
     work_of,
@@ -39,110 +35,81 @@ class Done(NamedTuple):
 
 
 @always_inlined
-def _free(point: Point, v: float, size: float, soft: SoftConstraint) -> tuple[float, float]:
-    """Return what :func:`free_change` does; nothing for a point that meets after this substep."""
-    if point.ahead != 0:
-        return 0.0, 0.0
-    v = v - point.bend
-    return free_change(point.normal_impulse, point.normal_mass, v, point.separation, size, soft)
+def _free(point: ConstraintPoint, v: float, soft: SoftConstraint) -> float:
+    """Return what :func:`free_impulse` does."""
+    spring = ContactSpring(point.gain, point.closing, point.push, point.limit, point.given, point.give)
+    free: float = free_impulse(point.normal_impulse, v, spring, soft)
+    return free
 
 
 @always_inlined
 def _one_point(
-    manifold: Manifold,
-    point: Point,
-    v: PairVelocity[float],
-    mass: PairInverseMass[float],
-    soft: SoftConstraint,
-    booked: bool,
+    pair: Constraint, point: ConstraintPoint, v: PairVelocity[float], soft: SoftConstraint, booked: bool
 ) -> tuple[PairVelocity[float], Done]:
-    """Find the impulses of a pair of one point; return the velocities after them, and what was done.
-
-    Work of friction is computed only where it is ``booked``.
-
-    How the normal impulse changes the speed of sliding is added to it: a shorter chain of operations, each of
-    which waits for the one before, than by the velocities after it.
-    """
-    at = frame_of(manifold, point)
-    turn_a, turn_b, roll_a, roll_b = moment_arms(at)
-    along, across = along_and_across(at.nx, at.ny, v.bx - v.ax, v.by - v.ay)
-    approach = along + (v.wb * turn_b - v.wa * turn_a)
-    change, _ = _free(point, approach, manifold.size, soft)
-    before = point.normal_impulse
-    normal, tangent, moment_a, moment_b = one_normal(before, change), 0.0, 0.0, 0.0
-    point.normal_impulse = before + normal
-    ma, ia, ib, friction_work = mass.a + mass.b, mass.inertia_a, mass.inertia_b, 0.0
-    pressed = work_of(normal * approach, normal, normal * turn_a, normal * turn_b, ma, ia, ib)
-    if manifold.friction > 0.0:
-        coupling = response(0.0, ia, ib, turn_a, turn_b, roll_a, roll_b)
-        slide = across + (v.wb * roll_b - v.wa * roll_a) + normal * coupling
-        held, limit = point.tangent_impulse, manifold.friction * point.normal_impulse
-        tangent = held_by_friction(held, point.tangent_mass, slide, limit) - held
-        point.tangent_impulse = held + tangent
-        moment_a, moment_b = tangent * roll_a, tangent * roll_b
-        if booked:
-            friction_work = work_of(tangent * slide, tangent, moment_a, moment_b, ma, ia, ib)
-    px, py = impulse_at(at.nx, at.ny, normal, tangent)
-    moment_a, moment_b = normal * turn_a + moment_a, normal * turn_b + moment_b
+    """Find the impulses of a pair of one point; return the velocities after them, and what was done."""
+    approach, slide = speeds_at(pair, point, v)
+    pressing = greater(_free(point, approach, soft), 0.0)
+    normal, tangent = pressing - point.normal_impulse, 0.0
+    point.normal_impulse = pressing
+    if pair.friction > 0.0:
+        slide = slide + normal * point.turning
+        held = held_by_friction(point.tangent_impulse - point.tangent_mass * slide, pair.friction * pressing)
+        tangent = held - point.tangent_impulse
+        point.tangent_impulse = held
+    px, py = impulse_at(pair.normal_x, pair.normal_y, normal, tangent)
+    push_a, push_b = normal * point.normal_arm_a, normal * point.normal_arm_b
+    rub_a, rub_b = tangent * point.tangent_arm_a, tangent * point.tangent_arm_b
+    pressed, friction_work = 0.0, 0.0
+    if booked:
+        both, ia, ib = pair.mass_a + pair.mass_b, pair.inertia_a, pair.inertia_b
+        pressed = work_of(normal * approach, normal, push_a, push_b, both, ia, ib)
+        friction_work = work_of(tangent * slide, tangent, rub_a, rub_b, both, ia, ib)
     done = Done(max(abs(normal), abs(tangent)), pressed, friction_work)
-    return after_impulse(v, mass, px, py, moment_a, moment_b), done
+    return after_impulse(v, mass_of(pair), px, py, push_a + rub_a, push_b + rub_b), done
 
 
 @always_inlined
-def _normals(
-    manifold: Manifold,
-    one: Point,
-    two: Point,
-    v: PairVelocity[float],
-    mass: PairInverseMass[float],
-    soft: SoftConstraint,
-) -> tuple[PairVelocity[float], Done]:
-    """Find the normal impulses of two points; return the velocities after them, and what was done."""
-    nx, ny, size, both = manifold.normal_x, manifold.normal_y, manifold.size, mass.a + mass.b
-    along, _ = along_and_across(nx, ny, v.bx - v.ax, v.by - v.ay)
-    turn_1a, turn_1b, _, _ = moment_arms(frame_of(manifold, one))
-    turn_2a, turn_2b, _, _ = moment_arms(frame_of(manifold, two))
-    x1, x2 = one.normal_impulse, two.normal_impulse
-    v1, v2 = along + v.wb * turn_1b - v.wa * turn_1a, along + v.wb * turn_2b - v.wa * turn_2a
-    change1, mass1 = _free(one, v1, size, soft)
-    change2, mass2 = _free(two, v2, size, soft)
-    between = response(both, mass.inertia_a, mass.inertia_b, turn_1a, turn_1b, turn_2a, turn_2b)
-    d1, d2 = two_normals(x1, x2, change1, change2, mass1, mass2, between)
-    one.normal_impulse, two.normal_impulse = x1 + d1, x2 + d2
-    turn_a, turn_b = d1 * turn_1a + d2 * turn_2a, d1 * turn_1b + d2 * turn_2b
-    px, py = (d1 + d2) * nx, (d1 + d2) * ny
-    work = work_of(d1 * v1 + d2 * v2, d1 + d2, turn_a, turn_b, both, mass.inertia_a, mass.inertia_b)
-    return after_impulse(v, mass, px, py, turn_a, turn_b), Done(max(abs(d1), abs(d2)), work, 0.0)
+def _two_points(
+    pair: Constraint, one: ConstraintPoint, two: ConstraintPoint, v: PairVelocity[float],
+    soft: SoftConstraint, booked: bool,
+) -> tuple[PairVelocity[float], Done]:  # fmt: skip
+    """Find the impulses of a pair of two points; return the velocities after them, and what was done.
 
-
-@always_inlined
-def _friction(
-    manifold: Manifold, one: Point, two: Point, v: PairVelocity[float], mass: PairInverseMass[float]
-) -> tuple[PairVelocity[float], Done]:
-    """Find the tangential impulses of two points, each at most mu times the normal one.
-
-    Returns the velocities after them, and what was done.
+    How the normal impulses change the speeds of sliding is added to these: a shorter chain of operations,
+    each of which waits for the one before, than by the velocities after them.
     """
-    nx, ny, mu, both = manifold.normal_x, manifold.normal_y, manifold.friction, mass.a + mass.b
-    _, across = along_and_across(nx, ny, v.bx - v.ax, v.by - v.ay)
-    _, _, turn_1a, turn_1b = moment_arms(frame_of(manifold, one))
-    _, _, turn_2a, turn_2b = moment_arms(frame_of(manifold, two))
-    v1 = across + v.wb * turn_1b - v.wa * turn_1a
-    v2 = across + v.wb * turn_2b - v.wa * turn_2a
-    between = response(both, mass.inertia_a, mass.inertia_b, turn_1a, turn_1b, turn_2a, turn_2b)
-    x1, x2 = one.tangent_impulse, two.tangent_impulse
-    limit1, limit2 = mu * one.normal_impulse, mu * two.normal_impulse
-    d1, d2 = two_frictions(x1, x2, v1, v2, one.tangent_mass, two.tangent_mass, limit1, limit2, between)
-    one.tangent_impulse, two.tangent_impulse = x1 + d1, x2 + d2
-    turn_a, turn_b = d1 * turn_1a + d2 * turn_2a, d1 * turn_1b + d2 * turn_2b
-    work = work_of(d1 * v1 + d2 * v2, d1 + d2, turn_a, turn_b, both, mass.inertia_a, mass.inertia_b)
-    after = after_impulse(v, mass, -(d1 + d2) * ny, (d1 + d2) * nx, turn_a, turn_b)
-    return after, Done(max(abs(d1), abs(d2)), 0.0, work)
+    (v1, slide1), (v2, slide2) = speeds_at(pair, one, v), speeds_at(pair, two, v)
+    x1, x2 = one.normal_impulse, two.normal_impulse
+    push1, push2 = two_normals(x1, x2, _free(one, v1, soft), _free(two, v2, soft), one.between, two.between)
+    one.normal_impulse, two.normal_impulse = x1 + push1, x2 + push2
+    rub1, rub2 = 0.0, 0.0
+    if pair.friction > 0.0:
+        slide1 = slide1 + (push1 * one.turning + push2 * one.turned_by_other)
+        slide2 = slide2 + (push2 * two.turning + push1 * two.turned_by_other)
+        y1, y2 = one.tangent_impulse, two.tangent_impulse
+        rub1, rub2 = two_frictions(
+            y1, y2, y1 - one.tangent_mass * slide1, y2 - two.tangent_mass * slide2,
+            pair.friction * (x1 + push1), pair.friction * (x2 + push2), one.across, two.across,
+        )  # fmt: skip
+        one.tangent_impulse, two.tangent_impulse = y1 + rub1, y2 + rub2
+    push_a = push1 * one.normal_arm_a + push2 * two.normal_arm_a
+    push_b = push1 * one.normal_arm_b + push2 * two.normal_arm_b
+    rub_a = rub1 * one.tangent_arm_a + rub2 * two.tangent_arm_a
+    rub_b = rub1 * one.tangent_arm_b + rub2 * two.tangent_arm_b
+    push, rub, pressed, friction_work = push1 + push2, rub1 + rub2, 0.0, 0.0
+    if booked:
+        both, ia, ib = pair.mass_a + pair.mass_b, pair.inertia_a, pair.inertia_b
+        pressed = work_of(push1 * v1 + push2 * v2, push, push_a, push_b, both, ia, ib)
+        friction_work = work_of(rub1 * slide1 + rub2 * slide2, rub, rub_a, rub_b, both, ia, ib)
+    px, py = impulse_at(pair.normal_x, pair.normal_y, push, rub)
+    change = max(max(abs(push1), abs(push2)), max(abs(rub1), abs(rub2)))
+    after = after_impulse(v, mass_of(pair), px, py, push_a + rub_a, push_b + rub_b)
+    return after, Done(change, pressed, friction_work)
 
 
 @always_inlined
 def sweep(
-    contacts: Contacts, motion: Motion, inverse: Inverse, soft: SoftConstraint, stirred: Stirred, booked: bool
+    constraints: Constraints, motion: Motion, soft: SoftConstraint, stirred: Stirred, booked: bool
 ) -> tuple[bool, float, float]:
     """Solve the scalar contacts of stirred bodies once, in every other sweep from the last to the first.
 
@@ -153,32 +120,25 @@ def sweep(
     linear, angular, unsettled = motion.linear, motion.angular, False
     backward = stirred.sweep % 2 == 1
     pressed, friction_work = 0.0, 0.0
-    for number in range(contacts.number):
-        p = contacts.touching[contacts.number - 1 - number if backward else number]
-        manifold, one, two = contacts.manifolds[p], contacts.points[2 * p], contacts.points[2 * p + 1]
-        a, b = manifold.a, manifold.b
+    for number in range(constraints.number):
+        k = unsigned(constraints.number - 1 - number if backward else number)
+        pair = constraints.pairs[k]
+        a, b = pair.a, pair.b
         if not (is_stirred(stirred, a) or is_stirred(stirred, b)):
             continue
-        mass, v = inverse_mass_of(inverse, a, b), velocity_of(linear, angular, a, b)
-        if manifold.count == 1:
-            v, done = _one_point(manifold, one, v, mass, soft, booked)
-            change = done.change
-            if booked:
-                pressed, friction_work = pressed + done.pressed, friction_work + done.friction_work
+        one, v = constraints.points[k + k], velocity_of(linear, angular, a, b)
+        held = 0.0
+        if pair.count == 1:
+            v, done = _one_point(pair, one, v, soft, booked)
         else:
-            v, done = _normals(manifold, one, two, v, mass, soft)
-            change = done.change
-            if booked:
-                pressed += done.pressed
-            if manifold.friction > 0.0:
-                v, done = _friction(manifold, one, two, v, mass)
-                change = max(change, done.change)
-                if booked:
-                    friction_work += done.friction_work
+            two = constraints.points[k + k + unsigned(1)]
+            v, done = _two_points(pair, one, two, v, soft, booked)
+            held = two.normal_impulse
         put_velocity(linear, angular, a, b, v)
-        held = one.normal_impulse + (two.normal_impulse if manifold.count == 2 else 0.0)
-        if change > SETTLED * held:
+        if booked:
+            pressed, friction_work = pressed + done.pressed, friction_work + done.friction_work
+        if done.change > SETTLED * (held + one.normal_impulse):
             unsettled = True
-            stir(stirred, inverse, a)
-            stir(stirred, inverse, b)
+            stir(stirred, a, pair.mass_a, pair.inertia_a)
+            stir(stirred, b, pair.mass_b, pair.inertia_b)
     return unsettled, pressed, friction_work

@@ -6,9 +6,7 @@ yet, or not any more: with a the acceleration of the point by forces, the mean v
 (v + v' - a h) / 2. A body at rest then does no work: its velocity is a h before, and 0 after.
 """
 
-from typing import Any, NamedTuple
-
-import numpy as np
+from typing import NamedTuple
 
 from physicslab.kernels import Flags, Numbers, Rows, Vectors, always_inlined, inlined, kernel
 from physicslab.kernels import wide_layout as L
@@ -26,22 +24,18 @@ from physicslab.kernels.accounts import (
 from physicslab.kernels.arguments import Acting, Contacts, Inverse, Motion, Near
 from physicslab.kernels.constraint.pair import (
     along_and_across,
-    frame_of,
     impulse_at,
     inverse_mass_of,
     moments_of,
-    point_state,
     velocity_of,
 )
 from physicslab.kernels.joints import blocks as B
 from physicslab.kernels.joints.blocks import Tables
 from physicslab.kernels.motion import damped
 from physicslab.kernels.near_counts import DISC_BLOCKS, WIDE_COUNT
+from physicslab.kernels.solver.constraints import Constraints, moments_about, speeds_at, unsigned
 from physicslab.kernels.solver.impact_log import Pose, book_outside
 from physicslab.kernels.wide.solve import slot_frame
-
-_unsigned: Any = np.uint64
-"""Makes an index of which no loop tests whether it counts from the end: that takes as long as the work."""
 
 
 @always_inlined
@@ -133,7 +127,8 @@ def _book_moved(
 
 @always_inlined
 def book_solved(
-    contacts: Contacts, near: Near, motion: Motion, inverse: Inverse, acting: Acting, h: float, half: float
+    contacts: Contacts, constraints: Constraints, near: Near, motion: Motion, inverse: Inverse,
+    acting: Acting, h: float, half: float,
 ) -> tuple[float, float]:  # fmt: skip
     """Return the work of normal and tangential impulses of scalar contacts [J] since velocities were noted.
 
@@ -145,33 +140,35 @@ def book_solved(
     pressed, friction_work = 0.0, 0.0
     for k in range(contacts.number):
         p = contacts.touching[k]
-        manifold = contacts.manifolds[p]
-        a, b, px, py = _unsigned(manifold.a), _unsigned(manifold.b), 0.0, 0.0
-        nx, ny, v = manifold.normal_x, manifold.normal_y, velocity_of(motion.linear, motion.angular, a, b)
-        for number in range(2 * p, 2 * p + manifold.count):
-            j = _unsigned(number)
-            point, noted = contacts.points[j], near.noted
-            frame, push, rub = frame_of(manifold, point), point.normal_impulse, point.tangent_impulse
-            at = point_state(frame, v)
+        manifold, pair = contacts.manifolds[p], constraints.pairs[k]
+        a, b, normal, tangent = pair.a, pair.b, 0.0, 0.0
+        v, before = (
+            velocity_of(motion.linear, motion.angular, a, b),
+            velocity_of(near.linear_before, near.angular_before, a, b),
+        )
+        for j in range(pair.count):
+            point, found = constraints.points[unsigned(2 * k + j)], contacts.points[unsigned(2 * p + j)]
+            push, rub = point.normal_impulse, point.tangent_impulse
+            speed, sliding = speeds_at(pair, point, v)
             if push != 0.0 or rub != 0.0:  # most that do not touch yet have none
-                before = point_state(frame, velocity_of(near.linear_before, near.angular_before, a, b))
-                pressed += 0.5 * push * (before.v + at.v)
-                friction_work += 0.5 * rub * (before.sliding + at.sliding)
-            point.separation += h * (at.v - point.bend)
-            noted[j, 0], noted[j, 1], noted[j, 2], noted[j, 3] = push, rub, at.v, at.sliding
-            x, y = impulse_at(nx, ny, push, rub)
-            px, py = px + x, py + y
-        if inverse.mass[a] == 0.0 or inverse.mass[b] == 0.0:
-            still, sign = (a, 1.0) if inverse.mass[a] == 0.0 else (b, -1.0)
+                earlier, slid = speeds_at(pair, point, before)
+                pressed += 0.5 * push * (earlier + speed)
+                friction_work += 0.5 * rub * (slid + sliding)
+            found.separation += h * (speed - found.bend)
+            point.noted_normal, point.noted_tangent = push, rub
+            point.noted_speed, point.noted_sliding = speed, sliding
+            normal, tangent = normal + push, tangent + rub
+        if pair.mass_a == 0.0 or pair.mass_b == 0.0:
+            still, sign = (a, 1.0) if pair.mass_a == 0.0 else (b, -1.0)
             position, linear = motion.position, motion.linear
             x = position[b, 0] - position[a, 0] - manifold.offset_x + sign * h * linear[still, 0]
             y = position[b, 1] - position[a, 1] - manifold.offset_y + sign * h * linear[still, 1]
             if acting.uniform:
                 ax, ay = _pull(a, b, inverse, acting)
-                pull, across = along_and_across(nx, ny, ax, ay)
-                push, rub = along_and_across(nx, ny, px, py)
-                pressed -= half * push * pull
-                friction_work -= half * rub * across
+                pull, across = along_and_across(pair.normal_x, pair.normal_y, ax, ay)
+                pressed -= half * normal * pull
+                friction_work -= half * tangent * across
+            px, py = impulse_at(pair.normal_x, pair.normal_y, normal, tangent)
             _book_moved(near, motion, inverse, a, b, x, y, px, py)
     return pressed, friction_work
 
@@ -217,31 +214,36 @@ def _book_given(near: Near, given: Given) -> None:
 
 
 @always_inlined
-def book_relaxed(contacts: Contacts, near: Near, motion: Motion, inverse: Inverse) -> tuple[float, float]:
+def book_relaxed(
+    constraints: Constraints, near: Near, motion: Motion, inverse: Inverse
+) -> tuple[float, float]:
     """Return the work of what impulses of scalar contacts have changed by since :func:`book_solved` [J].
 
     Book what comes from outside by the whole of them: momentum, and the work of drivers. Outside is what no
     impulse moves: fixed, held and driven bodies, and what keeps a body from turning.
     """
     pressed, friction_work, given = 0.0, 0.0, Given(0.0, 0.0, 0.0)
-    for k in range(contacts.number):
-        p = contacts.touching[k]
-        manifold = contacts.manifolds[p]
-        a, b = _unsigned(manifold.a), _unsigned(manifold.b)
-        v, px, py, turn_a, turn_b = velocity_of(motion.linear, motion.angular, a, b), 0.0, 0.0, 0.0, 0.0
-        for number in range(2 * p, 2 * p + manifold.count):
-            j = _unsigned(number)
-            point, noted = contacts.points[j], near.noted
-            frame, push, rub = frame_of(manifold, point), point.normal_impulse, point.tangent_impulse
-            more, also = push - noted[j, 0], rub - noted[j, 1]
+    for k in range(constraints.number):
+        pair = constraints.pairs[k]
+        a, b, normal, tangent, turn_a, turn_b = pair.a, pair.b, 0.0, 0.0, 0.0, 0.0
+        v = velocity_of(motion.linear, motion.angular, a, b)
+        for j in range(pair.count):
+            point = constraints.points[unsigned(2 * k + j)]
+            push, rub = point.normal_impulse, point.tangent_impulse
+            more, also = push - point.noted_normal, rub - point.noted_tangent
             if more != 0.0 or also != 0.0:
-                at = point_state(frame, v)
-                pressed += 0.5 * more * (noted[j, 2] + at.v)
-                friction_work += 0.5 * also * (noted[j, 3] + at.sliding)
-            x, y = impulse_at(frame.nx, frame.ny, push, rub)
-            moment_a, moment_b = moments_of(frame, x, y)
-            px, py, turn_a, turn_b = px + x, py + y, turn_a + moment_a, turn_b + moment_b
-        if inverse.inertia[a] == 0.0 or inverse.inertia[b] == 0.0:
+                speed, sliding = speeds_at(pair, point, v)
+                pressed += 0.5 * more * (point.noted_speed + speed)
+                friction_work += 0.5 * also * (point.noted_sliding + sliding)
+            moment_a, moment_b = moments_about(point, push, rub)
+            normal, tangent, turn_a, turn_b = (
+                normal + push,
+                tangent + rub,
+                turn_a + moment_a,
+                turn_b + moment_b,
+            )
+        if pair.inertia_a == 0.0 or pair.inertia_b == 0.0:
+            px, py = impulse_at(pair.normal_x, pair.normal_y, normal, tangent)
             given = _given(given, near, motion, inverse, a, b, px, py, turn_a, turn_b)
     _book_given(near, given)
     return pressed, friction_work
@@ -275,7 +277,7 @@ def book_slots(
             if not slots.outside[k]:
                 continue
             for slot in range(k * L.WIDE, (k + 1) * L.WIDE):
-                a, b, at = _unsigned(slots.a[slot]), _unsigned(slots.b[slot]), k * rows + slot - k * L.WIDE
+                a, b, at = unsigned(slots.a[slot]), unsigned(slots.b[slot]), k * rows + slot - k * L.WIDE
                 if slots.pair[slot] < 0 or (inverse.inertia[a] > 0.0 and inverse.inertia[b] > 0.0):
                     continue
                 noted, j = near.noted, 2 * slots.pair[slot]

@@ -70,78 +70,96 @@ type Work = tuple[Wide, Wide]
 """Work of normal and of tangential impulses [J], slot by slot."""
 
 
-@always_inlined
-def free_change[N: (float, Wide)](
-    impulse: N, mass: N, v: N, separation: N, size: N, soft: SoftConstraint
-) -> tuple[N, N]:
-    """Return what an iteration adds to the normal impulse of a point [N s] that approaches at -v [m/s].
+class ContactSpring[N: (float, Wide)](NamedTuple):
+    """How the normal impulse of a point answers to its velocity and to itself, for the separation of now.
 
-    Then the effective mass that goes with it [kg]. The impulse may come to pull. What overlaps is held by a
-    stiff, overdamped spring that corrects ``push_rate`` of the overlap a second, no faster than balances
-    twice the load: else a pile of overlapping bodies would burst. Bodies that are apart may close the
-    separation within the substep, and not more. Deep overlap gives way to what no force presses: a driven
-    body would press what it cannot move ever harder, until that flies to the side.
+    The effective mass that takes part [kg], and what closes a gap [N s]; what pushes out overlap, negative,
+    and its limit where no load presses [N s]; how much of an impulse the spring gives back at most [N s]; and
+    the share that it gives up of what is beyond the impulse of all forces.
     """
-    load = lesser(impulse, soft.force_cap) * (2.0 * soft.impulse_scale / soft.mass_scale)
-    limit = mass * size * (soft.push_rate * SOFT) + load
-    push = greater(mass * soft.push_rate * lesser(separation, 0.0), -limit)
-    deep = separation < -DEEPER * size
-    push = choose(deep, 0.0, push)
-    yielding = choose(deep, soft.give * greater(impulse - soft.force_cap, 0.0), 0.0)
-    given = lesser(soft.impulse_scale * impulse, mass * size * (soft.push_rate * soft.mass_scale * soft.sunk))
-    corrected = -soft.mass_scale * (mass * v + push) - given - yielding
-    hard = -mass * (v + separation * soft.inverse_h)
-    apart = separation > -_NO_OVERLAP * size
-    change: N = choose(apart, hard, corrected)
-    effective: N = choose(apart, mass, soft.mass_scale * mass)
-    return change, effective
+
+    gain: N
+    closing: N
+    push: N
+    limit: N
+    given: N
+    give: N
 
 
 @always_inlined
-def one_normal[N: (float, Wide)](impulse: N, change: N) -> N:
-    """Return the change of the normal impulse of a single point, which does not pull [N s]."""
-    total: N = greater(impulse + change, 0.0) - impulse
-    return total
+def spring_of[N: (float, Wide)](mass: N, separation: N, size: N, soft: SoftConstraint) -> ContactSpring[N]:
+    """Return the spring of a point, by its effective mass [kg] and the size of the smaller body [m].
+
+    An overlap is held by a stiff, overdamped spring that corrects ``push_rate`` of the overlap a second,
+    no faster than balances twice the load: else a pile of overlapping bodies would burst. Bodies that are
+    apart may close the separation within the substep, and not more. Deep overlap gives way to what no force
+    presses: a driven body would press what it cannot move ever harder, until that flies to the side.
+    """
+    soft_mass = soft.mass_scale * mass
+    apart, deep = separation > -_NO_OVERLAP * size, separation < -DEEPER * size
+    push = soft_mass * soft.push_rate * lesser(separation, 0.0)
+    most = soft_mass * size * soft.push_rate
+    return ContactSpring(
+        choose(apart, mass, soft_mass),
+        choose(apart, -mass * (separation * soft.inverse_h), 0.0),
+        choose(apart, 0.0, choose(deep, 0.0, push)),
+        most * SOFT,
+        choose(apart, 0.0, most * soft.sunk),
+        choose(deep, soft.give, 0.0),
+    )
+
+
+@always_inlined
+def free_impulse[N: (float, Wide)](impulse: N, v: N, spring: ContactSpring[N], soft: SoftConstraint) -> N:
+    """Return the normal impulse [N s] that an iteration gives a point which approaches at -v [m/s].
+
+    It may come to pull.
+    """
+    load = lesser(impulse, soft.force_cap) * (2.0 * soft.impulse_scale)
+    push = greater(spring.push, -(spring.limit + load))
+    given = lesser(soft.impulse_scale * impulse, spring.given)
+    yielding = spring.give * greater(impulse - soft.force_cap, 0.0)
+    free: N = impulse + (spring.closing - push - given - yielding) - spring.gain * v
+    return free
 
 
 @always_inlined
 def two_normals[N: (float, Wide)](
-    impulse1: N, impulse2: N, change1: N, change2: N, mass1: N, mass2: N, between: N
+    impulse1: N, impulse2: N, free1: N, free2: N, between1: N, between2: N
 ) -> tuple[N, N]:
     """Return the changes of the normal impulses of two points that act on each other [N s].
 
-    ``change1``, ``mass1`` and so on are those of :func:`free_change` for each by itself, ``between`` is how
-    an impulse at one changes the velocity of the other [1/kg]. Each is solved before the other, and the mean
-    of both is taken: what is symmetric stays so. Solved exactly, points that are nearly one would be given
-    large opposite impulses, and heaps of mixed bodies would never rest.
+    ``free1`` and ``free2`` are those of :func:`free_impulse` for each by itself; ``between1`` is how much
+    less the first one takes for each N s at the second. Each is solved before the other, and the mean of both
+    is taken: what is symmetric stays so. Solved exactly, points that are nearly one would be given large
+    opposite impulses, and heaps of mixed bodies would never rest.
     """
-    before1, before2 = greater(impulse1 + change1, 0.0), greater(impulse2 + change2, 0.0)
-    after1 = greater(impulse1 + change1 - between * mass1 * (before2 - impulse2), 0.0)
-    after2 = greater(impulse2 + change2 - between * mass2 * (before1 - impulse1), 0.0)
+    before1, before2 = greater(free1, 0.0), greater(free2, 0.0)
+    after1 = greater(free1 + between1 * impulse2 - between1 * before2, 0.0)
+    after2 = greater(free2 + between2 * impulse1 - between2 * before1, 0.0)
     total1: N = 0.5 * (before1 + after1)
     total2: N = 0.5 * (before2 + after2)
     return total1 - impulse1, total2 - impulse2
 
 
 @always_inlined
-def held_by_friction[N: (float, Wide)](impulse: N, mass: N, v: N, limit: N) -> N:
-    """Return the tangential impulse [N s] that stops a point that slides at v [m/s], at most ``limit``."""
-    total: N = lesser(greater(impulse - mass * v, -limit), limit)
-    return total
+def held_by_friction[N: (float, Wide)](free: N, limit: N) -> N:
+    """Return a tangential impulse [N s], of which friction gives at most ``limit``."""
+    held: N = lesser(greater(free, -limit), limit)
+    return held
 
 
 @always_inlined
 def two_frictions[N: (float, Wide)](
-    impulse1: N, impulse2: N, v1: N, v2: N, mass1: N, mass2: N, limit1: N, limit2: N, between: N
+    impulse1: N, impulse2: N, free1: N, free2: N, limit1: N, limit2: N, across1: N, across2: N
 ) -> tuple[N, N]:
     """Return the changes of the tangential impulses of two points [N s], which are treated alike.
 
-    See :func:`two_normals`.
+    ``free1`` and ``free2`` are those that stop each by itself. See :func:`two_normals`.
     """
-    before1 = held_by_friction(impulse1, mass1, v1, limit1)
-    before2 = held_by_friction(impulse2, mass2, v2, limit2)
-    after1 = held_by_friction(impulse1, mass1, v1 + between * (before2 - impulse2), limit1)
-    after2 = held_by_friction(impulse2, mass2, v2 + between * (before1 - impulse1), limit2)
+    before1, before2 = held_by_friction(free1, limit1), held_by_friction(free2, limit2)
+    after1 = held_by_friction(free1 + across1 * impulse2 - across1 * before2, limit1)
+    after2 = held_by_friction(free2 + across2 * impulse1 - across2 * before1, limit2)
     total1: N = 0.5 * (before1 + after1)
     total2: N = 0.5 * (before2 + after2)
     return total1 - impulse1, total2 - impulse2
@@ -161,24 +179,23 @@ def work_of[N: (float, Wide)](
 
 
 @always_inlined
-def _free_change(
+def _free_impulse(
     data: Numbers, point: int, size: Wide, v: Wide, drift: float, soft: SoftConstraint
 ) -> tuple[Wide, Wide]:
-    """Update the separations of points by the velocity; return what :func:`free_change` does."""
+    """Update the separations of points by the velocity; return free impulses, and the masses in them."""
     separation = take(data, point + L.SEPARATION)
     if drift != 0.0:
         separation = separation + drift * v
         put(data, point + L.SEPARATION, separation)
-    return free_change(take(data, point + L.IMPULSE), take(data, point + L.MASS), v, separation, size, soft)
+    spring = spring_of(take(data, point + L.MASS), separation, size, soft)
+    return free_impulse(take(data, point + L.IMPULSE), v, spring, soft), spring.gain
 
 
 @always_inlined
-def _update_friction(data: Numbers, point: int, friction: Wide, v: Wide) -> Wide:
-    """Update the tangential impulses, at most mu times the normal ones; return their change [N s]."""
-    limit, friction_impulse = friction * take(data, point + L.IMPULSE), take(data, point + L.TANGENT_IMPULSE)
-    total = held_by_friction(friction_impulse, take(data, point + L.TANGENT_MASS), v, limit)
-    put(data, point + L.TANGENT_IMPULSE, total)
-    return total - friction_impulse
+def _free_friction(data: Numbers, point: int, v: Wide) -> tuple[Wide, Wide, Wide]:
+    """Return tangential impulses, those that would stop points that slide at v, and the masses of these."""
+    impulse, mass = take(data, point + L.TANGENT_IMPULSE), take(data, point + L.TANGENT_MASS)
+    return impulse, impulse - mass * v, mass
 
 
 @always_inlined
@@ -221,10 +238,15 @@ def _sweep_discs(
     impulse, tangent = take(data, at + L.ONE + L.IMPULSE), take(data, at + L.ONE + L.TANGENT_IMPULSE)
     approach, across = along_and_across(nx, ny, v.bx - v.ax, v.by - v.ay)
     across = across - rb * v.wb - ra * v.wa
-    change, _ = _free_change(data, at + L.ONE, take(data, at + L.SIZE), approach, drift, soft)
-    push = one_normal(impulse, change)
-    put(data, at + L.ONE + L.IMPULSE, impulse + push)
-    friction_impulse = _update_friction(data, at + L.ONE, take(data, at + L.FRICTION), across)
+    free, _ = _free_impulse(data, at + L.ONE, take(data, at + L.SIZE), approach, drift, soft)
+    pressing = greater(free, 0.0)
+    push = pressing - impulse
+    put(data, at + L.ONE + L.IMPULSE, pressing)
+    held = held_by_friction(
+        tangent - take(data, at + L.ONE + L.TANGENT_MASS) * across, take(data, at + L.FRICTION) * pressing
+    )
+    friction_impulse = held - tangent
+    put(data, at + L.ONE + L.TANGENT_IMPULSE, held)
     px, py = impulse_at(nx, ny, push, friction_impulse)
     ma, mb = take(data, at + L.MASS_A), take(data, at + L.MASS_B)
     ia, ib = take(data, at + L.INERTIA_A), take(data, at + L.INERTIA_B)
@@ -286,11 +308,11 @@ def _sweep_boxes(
     n2a, n2b, t2a, t2b = moment_arms(_frame(data, at + L.TWO, nx, ny))
     along, across = along_and_across(nx, ny, v.bx - v.ax, v.by - v.ay)
     approach1, approach2 = along + v.wb * n1b - v.wa * n1a, along + v.wb * n2b - v.wa * n2a
-    change1, mass1 = _free_change(data, at + L.ONE, size, approach1, drift, soft)
-    change2, mass2 = _free_change(data, at + L.TWO, size, approach2, drift, soft)
+    free1, gain1 = _free_impulse(data, at + L.ONE, size, approach1, drift, soft)
+    free2, gain2 = _free_impulse(data, at + L.TWO, size, approach2, drift, soft)
     impulse1, impulse2 = take(data, at + L.ONE + L.IMPULSE), take(data, at + L.TWO + L.IMPULSE)
     between = response(ma + mb, ia, ib, n1a, n1b, n2a, n2b)
-    push1, push2 = two_normals(impulse1, impulse2, change1, change2, mass1, mass2, between)
+    push1, push2 = two_normals(impulse1, impulse2, free1, free2, between * gain1, between * gain2)
     put(data, at + L.ONE + L.IMPULSE, impulse1 + push1)
     put(data, at + L.TWO + L.IMPULSE, impulse2 + push2)
     turn_a, turn_b = n1a * push1 + n2a * push2, n1b * push1 + n2b * push2
@@ -300,14 +322,13 @@ def _sweep_boxes(
         pressed = work_of(
             push1 * approach1 + push2 * approach2, push1 + push2, turn_a, turn_b, ma + mb, ia, ib
         )
-    tangent1 = take(data, at + L.ONE + L.TANGENT_IMPULSE)
-    tangent2 = take(data, at + L.TWO + L.TANGENT_IMPULSE)
     sliding1, sliding2 = across + wb * t1b - wa * t1a, across + wb * t2b - wa * t2a
+    tangent1, stop1, mass1 = _free_friction(data, at + L.ONE, sliding1)
+    tangent2, stop2, mass2 = _free_friction(data, at + L.TWO, sliding2)
+    between = response(ma + mb, ia, ib, t1a, t1b, t2a, t2b)
     friction1, friction2 = two_frictions(
-        tangent1, tangent2, sliding1, sliding2,
-        take(data, at + L.ONE + L.TANGENT_MASS), take(data, at + L.TWO + L.TANGENT_MASS),
-        friction * (impulse1 + push1), friction * (impulse2 + push2),
-        response(ma + mb, ia, ib, t1a, t1b, t2a, t2b),
+        tangent1, tangent2, stop1, stop2, friction * (impulse1 + push1), friction * (impulse2 + push2),
+        between * mass1, between * mass2,
     )  # fmt: skip
     put(data, at + L.ONE + L.TANGENT_IMPULSE, tangent1 + friction1)
     put(data, at + L.TWO + L.TANGENT_IMPULSE, tangent2 + friction2)
