@@ -63,7 +63,7 @@ def test_a_step_of_the_tour_is_counted_in_the_language(german: Desk) -> None:
 @pytest.mark.parametrize(
     ("english", "said"),
     [
-        (Sentence("normal, from {body}", body=Sentence("the wall")).capitalize(), "Normalkraft von Wand"),
+        (Sentence("normal, from {body}", body=Sentence("the wall")).capitalize(), "Normalkraft von der Wand"),
         (Sentence("{force}: {size}", force=Sentence("weight"), size="1.5 N"), "Gewichtskraft: 1,5 N"),
         (Sentence("{how}, μ = {mu}", how=Sentence("sticks"), mu="0.5"), "haftet, μ = 0,5"),
         (Sentence("{motion} {speed}x", motion=Sentence("SLOW MOTION"), speed="0.25"), "ZEITLUPE 0,25x"),

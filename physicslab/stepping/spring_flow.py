@@ -141,7 +141,7 @@ class SpringFlow:
         full = turns or damped > 0 or len(slowed) > 0
         if full:
             parts += [turned, np.zeros(-(-len(moving) // WIDE) * WIDE), np.tile((1.0, 0.0), p + WIDE)]
-            parts += [np.zeros(5 * p), np.sqrt(spring["damping"]), np.zeros(4 * len(order))]
+            parts += [np.zeros(5 * p), spring["damping"], np.zeros(4 * len(order))]
             parts += [*_arms(state, rows, order, slots, len(moving)), np.zeros(4 * len(order) + 6)]
         gain = np.zeros((2, len(by_drag)))
         gain[:, : len(slowed)] = drag_per_mass(state, moving)[slowed] / inverse[slowed], inverse[slowed]

@@ -81,14 +81,13 @@ def _evaluate(
                 put(full.turned_b, at, arms[2])
                 put(full.turned_b, n + at, arms[3])
             ux, uy = opening_of(places.speed, full.spin, links, turns, arms, at)
-            strength = take(full.strength, at)
-            nx, ny = strength * nx, strength * ny
             opening = nx * ux + ny * uy
+            resisted = take(full.damping, at) * opening
             put(full.along_x, at, nx)
             put(full.along_y, at, ny)
             put(full.first, at, opening)
-            taken = taken + opening * opening
-            fx, fy = fx + opening * nx, fy + opening * ny
+            taken = taken + resisted * opening
+            fx, fy = fx + resisted * nx, fy + resisted * ny
         pull_ends(places, links, full, turns, arms, at, fx, fy)
         short |= mask_bits(length < followed * take(links.rest, at))
     if full.damped > 0:
@@ -117,11 +116,12 @@ def _resist(
         ux, uy = opening_of(full.rate, full.spin_rate, links, turns, (ax, ay, bx, by), at)
         nx, ny = take(full.along_x, at), take(full.along_y, at)
         opening = nx * ux + ny * uy
-        by_first = by_first + opening * take(full.first, at)
-        by_last = by_last + opening * take(full.opening, at)
-        by_itself = by_itself + opening * opening
+        resisted = take(full.damping, at) * opening
+        by_first = by_first + resisted * take(full.first, at)
+        by_last = by_last + resisted * take(full.opening, at)
+        by_itself = by_itself + resisted * opening
         put(full.opening, at, opening)
-        pull_ends(places, links, full, turns, (ax, ay, bx, by), at, opening * nx, opening * ny)
+        pull_ends(places, links, full, turns, (ax, ay, bx, by), at, resisted * nx, resisted * ny)
     full.sums[0], full.sums[1], full.sums[2] = sum_of(by_first), sum_of(by_last), sum_of(by_itself)
     if len(slowed.places) > 0:
         slow(places, slowed, full.rate, full.sums, False, full.reach[reach + 3 * S.MOST_TERMS])
