@@ -28,8 +28,8 @@ class Full(NamedTuple):
     spring may turn a body; ``angle`` [rad] of m bodies and of more, so that they are a multiple of eight,
     ``facing`` the cosines and sines of as many and of p; ``spin`` (p,) [rad/s]. ``rate`` (p, 2) and
     ``spin_rate`` (p,) are the last derivatives of velocities that were taken, ``twist`` (p,) torques.
-    ``damping`` (n,); ``along_x``, ``along_y`` (n,) directions, ``first`` and ``opening`` (n,) how fast springs
-    lengthen, and its last derivative.
+    ``damping`` (n,); ``along_x``, ``along_y`` (n,) directions, ``first`` and ``opening`` (n,) how fast
+    springs lengthen, and its last derivative.
     ``arm_a``, ``arm_b`` (2 n,) are in the frames of bodies, x first, ``turned_a``, ``turned_b`` in that of
     the world. From ``along_x`` to ``opening`` nothing is noted but of dampers. ``sums`` (6,) are of the last
     derivative: its products with the first, with the one before and with itself times the resistance of
