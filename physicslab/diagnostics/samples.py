@@ -178,8 +178,8 @@ class Record:
         world = self._world
         concerned = [body for _, _, body in self._derived if body is not None]
         if len(concerned) == len(self._derived):
-            struck = [np.isin(impacts[name], concerned) for name in ("entity_a", "entity_b")]
-            impacts = impacts[struck[0] | struck[1]]
+            takes_part = [np.isin(impacts[name], concerned) for name in ("entity_a", "entity_b")]
+            impacts = impacts[takes_part[0] | takes_part[1]]
         elif len(impacts) * len(rows) > _MANY:
             return
         if not np.array_equal(rows, moving_rows(world)):

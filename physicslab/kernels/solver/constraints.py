@@ -70,6 +70,7 @@ def constrain(contacts: Contacts, constraints: Constraints, inverse: Inverse, sc
         pair.a, pair.b, pair.count, pair.friction = manifold.a, manifold.b, manifold.count, manifold.friction
         pair.normal_x, pair.normal_y = manifold.normal_x, manifold.normal_y
         pair.mass_a, pair.inertia_a, pair.mass_b, pair.inertia_b = mass
+        pair.between = 0.0  # of one point
         for j in range(manifold.count):
             found, point = contacts.points[2 * p + j], constraints.points[2 * k + j]
             arms = moment_arms(frame_of(manifold, found))
