@@ -147,6 +147,28 @@ def test_what_turns_on_its_spring_is_faster_and_what_is_dragged_slower(
     assert found.seconds == pytest.approx(run_period(world, crate), rel=1e-3)
 
 
+@pytest.mark.parametrize(("drag", "damper", "true"), [(2.0, 0.0, 5.634423638), (0.5, 0.6, 5.296307347)])
+def test_drag_on_one_of_two_bodies_slows_them_by_what_it_takes(
+    drag: float, damper: float, true: float
+) -> None:
+    """Both were taken to be dragged as much: 12 % too long. Roots of s²(s + d) + (1 + c s)(2 s + d)."""
+    world = empty_world(gravity_mode="none")
+    one, two = circle(world, (0.0, 0.0), mass=1.0), circle(world, (3.1, 0.0), mass=1.0)
+    world.add(one, Drag(linear=drag))
+    world.add(one, Spring(b=two, rest_length=3.0, stiffness=1.0, damping=damper))
+    found = period_of(world, two)
+    assert found is not None and found.seconds == pytest.approx(true, rel=1e-8)
+
+
+def test_damping_of_motion_and_of_turning_slow_each_its_own() -> None:
+    """Of s²(s + 3) + k (s + g (s + 3)), g the share of turning."""
+    world = empty_world(gravity_mode="none", linear_damping=3.0)
+    crate = box(world, (-0.001, 0.0), width=1.0, height=1.0, mass=1.0)
+    world.add(crate, Spring(anchor_a=(0.0, 0.4), anchor_b=(3.0, 0.4), rest_length=3.0, stiffness=20.0))
+    found = period_of(world, crate)
+    assert found is not None and found.seconds == pytest.approx(1.040940008, rel=1e-8)
+
+
 def test_a_charge_in_a_magnetic_field_has_no_period_of_its_spring() -> None:
     world = empty_world(gravity_mode="none", magnetic_field=5.0)
     ball = circle(world, (0.0, 0.0), radius=0.1)

@@ -5,7 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from physicslab import World, load_scene, save_scene
+from physicslab import SimulationConfig, Vector2, World, box, circle, load_scene, save_scene
+from physicslab.components import Rod
 from physicslab.contacts.arguments import motion_of
 from physicslab.diagnostics.free_body import (
     applied_forces,
@@ -34,6 +35,8 @@ def test_forces_before_the_first_step_are_those_of_one(scene: str) -> None:
     assert world.steps == 0
     assert all(np.array_equal(*pair) for pair in zip(before, motion_of(world), strict=True))
     other.step((1.0 if is_soft(world) else 1e-4) * other.simulation.dt)
+    for now, then in zip(motion_of(other), before, strict=True):
+        now[...] = then  # joints pull along where bodies are
     assert other.forces_known
     after = joint_forces(other) + contact_forces(other)
     # In 1.7 us the strings of the cradle stretch by 3e-5.
@@ -66,6 +69,21 @@ def test_of_a_pendulum_at_rest_the_part_across_the_rod_is_left() -> None:
     assert abs(net.dot(rod)) < 1e-6 * rod.magnitude * net.magnitude
     reading = Reading(world)
     assert (reading.value("force x", body), reading.value("force y", body)) == tuple(net)
+
+
+def test_joints_and_contacts_are_where_bodies_are_and_not_a_step_ahead() -> None:
+    world = World(simulation=SimulationConfig(contacts="soft"))
+    box(world, (0.0, -0.5), width=90.0, height=1.0, static=True)
+    crate = box(world, (0.0, 0.5), width=1.0, height=1.0, velocity=(10.0, 0.0), friction=0.0)
+    one = circle(world, (0.0, 5.0), radius=0.2, velocity=(10.0, 0.0))
+    other = circle(world, (0.0, 3.0), radius=0.2, velocity=(10.0, 6.0))
+    rod = world.spawn(Rod(a=one, b=other))
+    (joint,) = joint_states(world)
+    assert is_soft(world) and not world.forces_known
+    assert joint.entity == rod and joint.place == Vector2(0.0, 5.0)
+    assert joint.force.x == pytest.approx(0.0, abs=1e-9 * joint.force.y), "along the rod as it is"
+    places = [force.place.x for force in forces_on(world, crate) if force.kind == "normal"]
+    assert places == pytest.approx([0.0], abs=0.01)
 
 
 def test_an_edit_is_seen_in_the_forces_at_once() -> None:

@@ -67,14 +67,12 @@ def edit(world: World, random: Random) -> World:
     elif choice == 7:
         world.simulation = replace(world.simulation, substeps=world.simulation.substeps + 1)
     elif choice == 8:
-        world.account.restart()
-    elif choice == 9:
         world.time = random.uniform(0.0, 3.0)
-    elif choice == 10:
+    elif choice == 9:
         return world.copy()
-    elif choice == 11:
+    elif choice == 10:
         world.reset()
-    elif choice == 12:
+    elif choice == 11:
         world.book_edits()
     return world
 

@@ -762,13 +762,14 @@ def test_joints_of_a_file_hold_what_sleeps_there(awake: bool, tmp_path: Path) ->
 
 
 @pytest.mark.parametrize("idle", [False, True])
-@pytest.mark.parametrize("alone", [False, True])
-def test_all_forces_pull_what_sleeps_in_the_accounts(idle: bool, alone: bool) -> None:
+@pytest.mark.parametrize(("alone", "fixed"), [(False, False), (True, False), (True, True)])
+def test_all_forces_pull_what_sleeps_in_the_accounts(idle: bool, alone: bool, fixed: bool) -> None:
     """Thrust on a body that sleeps was booked to nothing, and friction did not hold it."""
     world = World(simulation=SimulationConfig(sleeping=True, contacts="soft"))
     box(world, (0.0, -0.5), width=9.0, height=1.0, static=True, friction=0.9)
     crate = box(world, (0.0, 0.5), width=1.0, height=1.0, friction=0.9)
-    world.add(crate, Thrust(force=(2.0, 0.0)))
+    world.add(crate, Thrust(force=(2.0, 0.0), torque=3.0 if fixed else 0.0))
+    world.component(crate, Mass).fixed_rotation = fixed  # no torque turns it
     if not alone:
         circle(world, (3.0, 90.0), radius=0.2)
     if idle:

@@ -226,6 +226,30 @@ def test_two_boxes_that_fall_on_each_other_go_alike_mirrored_and_in_another_orde
     assert np.abs(np.subtract(found[0], found[1])).max() < 1e-11
 
 
+def a_crate(world: World) -> int:
+    return box(world, (0, 0.5), width=1, height=1, friction=0.6)
+
+
+def a_ball(world: World) -> int:
+    return circle(world, (0, 0.5), radius=0.5, friction=0.6)
+
+
+@pytest.mark.parametrize("make", [a_crate, a_ball])
+def test_friction_that_is_taken_away_holds_no_more(make: Callable[[World], int]) -> None:
+    """The impulse of friction from before the edit was applied in each substep: a crate stood for ever."""
+    world = laboratory(1 / 60)
+    world.physics = replace(world.physics, gravity=Vector2(2.0, -9.81))
+    box(world, (0, -0.5), width=40, height=1, static=True, friction=0.6)
+    body = make(world)
+    world.run(seconds=0.5)
+    velocity, spin = world.component(body, Velocity).linear, world.component(body, Velocity).angular
+    world.component(body, Material).friction = 0.0
+    world.run(seconds=0.5)
+    now = world.component(body, Velocity)
+    assert now.linear.x == pytest.approx(velocity.x + 1.0, abs=1e-3)
+    assert now.angular == pytest.approx(spin, abs=1e-3)
+
+
 @pytest.mark.parametrize("iterations", [None, 4, 8, 32, 64])
 def test_the_swaying_of_a_tower_decays_however_often_it_is_swept(iterations: int | None) -> None:
     """Sweeps hardly reach it, and a contact spring stiffer than they carry feeds it."""

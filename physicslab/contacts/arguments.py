@@ -65,9 +65,8 @@ def near_in(state: State) -> Plain[Near]:
     if len(contacts.noted) < len(contacts.points):
         contacts.noted = np.zeros((len(contacts.points), 4))
         contacts.apart = np.zeros(len(contacts.manifolds), APART)
-        contacts.constraints = np.empty(
-            len(contacts.manifolds), CONSTRAINT
-        )  # each is written before it is read
+        # These are written before they are read.
+        contacts.constraints = np.empty(len(contacts.manifolds), CONSTRAINT)
         contacts.constraint_points = np.empty(len(contacts.points), CONSTRAINT_POINT)
     return (
         contacts.counts, contacts.manifolds, contacts.points, contacts.scalar, contacts.touching,

@@ -146,9 +146,9 @@ def book_sleep(state: State, asleep: _Marks, h: float) -> None:
     gravity = state.physics.gravity if state.physics.gravity_mode == "linear" else Vector2()
     work.book_held(
         state.table(Transform)["position"], state.table(Mass)["mass"], bodies.inverse_mass,
-        np.where(asleep, 0.0, bodies.inverse_mass), state.sleep.forces, state.uniform_forces, gravity.x,
-        gravity.y, state.sleep.other, h, joints.nodes, joints.body, joints.gradient, joints.impulse,
-        h / (acted or _impulse_dt(state)), state.account.sums,
+        bodies.inverse_inertia, np.where(asleep, 0.0, bodies.inverse_mass), state.sleep.forces,
+        state.uniform_forces, gravity.x, gravity.y, state.sleep.other, h, joints.nodes, joints.body,
+        joints.gradient, joints.impulse, h / (acted or _impulse_dt(state)), state.account.sums,
     )  # fmt: skip
 
 

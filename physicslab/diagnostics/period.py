@@ -1,6 +1,8 @@
 """Present forces of springs, and the period of one body on one spring."""
 
 import math
+from collections import defaultdict
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,6 +19,8 @@ _MAX_MEANS = 60
 """Largest number of means; each doubles the number of digits."""
 _AT_REST = 1e-12
 """Share of its length by which a spring may be longer or shorter and still be treated as at rest."""
+_CREEPS = 1e-6
+"""Share of its fastest rate below which a swing is rounding: two rates of decay that are the same."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,26 +99,42 @@ def period_of(world: World, entity: int) -> Period | None:
         return None
     if not bodies or any(len(_springs_at(world, end)) > 1 for end in bodies):
         return None
-    mass = 1.0 / sum(1.0 / world.component(end, Mass).mass for end in bodies)
     if len(bodies) == 1:
-        swing = _on_a_string(world, number, bodies[0], mass)
+        swing = _on_a_string(world, number, bodies[0])
         if swing is not None:
             return swing if swing.seconds > 0.0 else None
-    state = spring_state(world, number)
+    state, physics = spring_state(world, number), world.physics
     if state is None or any(_is_pulled_besides(world, end) for end in bodies):
         return None
-    turned = sum(_turns(world, end, state) for end in bodies)
-    if turned and world.physics.gravity_mode == "linear" and world.physics.gravity.magnitude:
+    turns = [_turns(world, end, state) for end in bodies]
+    if any(turns) and physics.gravity_mode == "linear" and physics.gravity.magnitude:
         return None  # it turns until it hangs below
-    inverse = 1.0 / mass + turned
-    drags = [world.component(end, Drag).linear if world.has(end, Drag) else 0.0 for end in bodies]
-    drag = max(drag / world.component(end, Mass).mass for drag, end in zip(drags, bodies, strict=True))
-    lost = spring.damping * inverse + drag + world.physics.linear_damping
-    rate = spring.stiffness * inverse - (0.5 * lost) ** 2
-    if rate <= 0.0:
+    gains: defaultdict[float, float] = defaultdict(float)
+    for end, turn in zip(bodies, turns, strict=True):
+        mass = world.component(end, Mass).mass
+        drag = world.component(end, Drag).linear / mass if world.has(end, Drag) else 0.0
+        gains[drag + physics.linear_damping] += 1.0 / mass
+        gains[physics.angular_damping] += turn
+    rate = _rate(spring, gains)
+    if rate == 0.0:
         return None  # its damper lets it creep back
-    law = "of small oscillations along the spring" + ("" if turned or lost else ": 2 pi sqrt(m / k)")
-    return Period(2.0 * math.pi / math.sqrt(rate), law)
+    lost = spring.damping or any(decay * gain for decay, gain in gains.items())
+    law = "of small oscillations along the spring" + ("" if any(turns) or lost else ": 2 pi sqrt(m / k)")
+    return Period(2.0 * math.pi / rate, law)
+
+
+def _rate(spring: Spring, gains: Mapping[float, float]) -> float:
+    """Return the angular frequency of a spring whose ends an impulse along it moves apart [rad/s], or 0.
+
+    ``gains`` has by how much [1/kg], for each rate at which that velocity decays by drag [1/s].
+    """
+    decays, gain = np.array([*gains]), np.array([*gains.values()])
+    system = np.zeros((1 + len(gain), 1 + len(gain)))  # of the stretch and of these velocities
+    system[0, 1:], system[1:, 0] = 1.0, -spring.stiffness * gain
+    system[1:, 1:] = -spring.damping * gain[:, np.newaxis] - np.diag(decays)
+    found = np.linalg.eigvals(system)
+    rate = float(found.imag.max())
+    return rate if rate > _CREEPS * float(np.abs(found).max()) else 0.0
 
 
 def _turns(world: World, body: int, state: SpringState) -> float:
@@ -192,13 +212,13 @@ def _swing(pull: Vector2, arm: Vector2, rate: float, length: float, give: float 
     return Period(4.0 * math.sqrt(length / strength) * turning, law)
 
 
-def _on_a_string(world: World, number: int, body: int, mass: float) -> Period | None:
+def _on_a_string(world: World, number: int, body: int) -> Period | None:
     """Return the period of a pendulum on a spring; 0 s if it has none; ``None`` for any other body."""
     physics, state = world.physics, spring_state(world, number)
     spring, pull = world.component(number, Spring), world.physics.gravity.magnitude
     if physics.gravity_mode != "linear" or not pull or state is None:
         return None
-    stretch = mass * pull / spring.stiffness
+    stretch = world.component(body, Mass).mass * pull / spring.stiffness
     own = spring.a or number
     anchor = spring.anchor_a if own == body else spring.anchor_b
     if stretch > _STRING * spring.rest_length or anchor or state.length <= 0.0:

@@ -7,6 +7,7 @@ from contextlib import suppress
 from weakref import WeakKeyDictionary
 
 from physicslab.state.masses import Diverged
+from physicslab.state.samples import motion_of_rows, moving_rows, put_motion
 from physicslab.stepping.keyframe import Keyframe
 from physicslab.systems.system import System
 from physicslab.world import World
@@ -15,7 +16,7 @@ _SHORT = 1e-4
 """Length of the step that finds them, in steps of the scene: nothing has moved by what can be seen. It is not
 shorter, as places are known to rounding only: contacts at rest would be apart by more than they close. Where
 contacts are soft it is a whole step, as their law has its length in it: they take what is left of a velocity,
-and close what is left of a gap, within it."""
+and close what is left of a gap, within it. Bodies are then put back to where they were."""
 
 _found: WeakKeyDictionary[World, "_Stepped"] = WeakKeyDictionary()
 """The last result for each world."""
@@ -45,16 +46,20 @@ class _Stepped:
             Keyframe(world).fill(now)
             is_soft = any((plan.collisions, plan.contacts) == ("step", "soft") for plan in world.plans)
             now.step((1.0 if is_soft else _SHORT) * world.simulation.dt)
+            rows = moving_rows(world)
+            there = now.entity_index.rows_of(world.entity_index.entities[rows])
+            put_motion(now, there, motion_of_rows(world, rows))
+            now.time = world.time
             self._copy = self.world = now
 
 
 def with_present_forces(world: World) -> World:
     """Return a world whose joints and contacts have the forces of the present state, for reading only.
 
-    It is the world itself where a step has led to that state. If not, it is a copy that has made a
-    step: entities have the same numbers there, and maybe other rows. Systems that do not act within a step
-    have no part in it. Where it cannot be made it is the world itself (``forces_known`` tells), and its next
-    step says why.
+    It is the world itself where a step has led to that state. If not, it is a copy that has made a step and
+    has the present motion: entities have the same numbers there, and maybe other rows. Systems that do not
+    act within a step have no part in it. Where it cannot be made it is the world itself (``forces_known``
+    tells), and its next step says why.
     """
     world.synchronise()
     if world.forces_known or not (world.joints.joints or world.plan.collisions != "none"):

@@ -125,7 +125,7 @@ class _Watch:
     def __init__(
         self, world: World, until: str, reader: ImpactReader, records: list[NDArray[Any]], again: bool
     ) -> None:
-        self._world, self._reader, self._records, self._text = world, reader, records, until
+        self._world, self._reader, self._records = world, reader, records
         if not isinstance(until, str):
             raise InvalidValue("record", "until", until, "a condition, as 'ball.x >= 8 m' is one")
         try:

@@ -14,7 +14,7 @@ import numpy as np
 from physicslab.kernels.forces.budget import END, KEPT
 from physicslab.kernels.forces.force_calls import add_forces
 from physicslab.kernels.joints import layout
-from physicslab.kernels.joints.soft import HOLD
+from physicslab.kernels.joints.terms import HOLD
 from physicslab.kernels.ode.dop853 import dop853
 from physicslab.ode.system import NOTHING_WANTED, OdeSystem
 

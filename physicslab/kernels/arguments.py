@@ -107,7 +107,7 @@ class Near(NamedTuple):
 class Contacts(NamedTuple):
     """The scalar pairs that touch: records, points, which pairs, and how many.
 
-    A function that is given no more than it takes is called faster: the near pairs are 160 machine words.
+    A function that is given no more than it takes is called faster: near pairs are hundreds of machine words.
     """
 
     manifolds: Manifolds

@@ -34,12 +34,17 @@ FLAT, _POINT, LIT, _RUBBER, GROUND, _WOOD, _STEEL, _STONE, _ICE, _GLASS = range(
 
 
 @inlined
-def mixed(under: int, over: int, share: float) -> int:
-    """Return ``under`` with a share (0..1) of ``over`` laid on it, channel by channel."""
-    a = int(share * 256.0 + 0.5)
-    low = ((under & _EVERY_OTHER) * (256 - a) + (over & _EVERY_OTHER) * a) >> 8
-    high = ((under >> 8) & _EVERY_OTHER) * (256 - a) + ((over >> 8) & _EVERY_OTHER) * a
+def blended(under: int, over: int, share: int) -> int:
+    """Return ``under`` with a share (0..256) of ``over`` laid on it, channel by channel."""
+    low = ((under & _EVERY_OTHER) * (256 - share) + (over & _EVERY_OTHER) * share) >> 8
+    high = ((under >> 8) & _EVERY_OTHER) * (256 - share) + ((over >> 8) & _EVERY_OTHER) * share
     return (low & _EVERY_OTHER) | (high & (_EVERY_OTHER << 8))
+
+
+@inlined
+def mixed(under: int, over: int, share: float) -> int:
+    """Return what :func:`blended` does, for a share from 0 to 1."""
+    return blended(under, over, int(share * 256.0 + 0.5))
 
 
 @inlined

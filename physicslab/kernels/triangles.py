@@ -18,6 +18,7 @@ from numba import float32, uint8, uint32
 from numpy.typing import NDArray
 
 from physicslab.kernels import inlined, kernel
+from physicslab.kernels.finishes import blended
 from physicslab.kernels.raster import Pixels
 
 Vertices = Annotated[NDArray[np.float32], float32[:, ::1]]
@@ -29,23 +30,14 @@ Indices = Annotated[NDArray[np.uint32], uint32[::1]]
 Coverage = Annotated[NDArray[np.uint8], uint8[:, ::1]]
 """A uint8 array (height, width): how much of each texel is covered, 255 for all."""
 
-_EVERY_OTHER = 0x00FF00FF
-"""Two channels of a pixel, with room between them for products."""
+_OPAQUE = 0xFF000000
+"""The highest byte of a pixel: its opacity."""
 
 
 @inlined
 def _whole(number: int) -> int:
     """Return a number of any type as a signed one: of signed and unsigned ones arithmetic makes fractions."""
     return np.int64(number)  # type: ignore[return-value]
-
-
-@inlined
-def _lay(pixels: Pixels, row: int, column: int, colour: int, alpha: int) -> None:
-    """Lay a colour (red, green, blue from the highest byte down) of some opacity (0 to 255) over a pixel."""
-    under, share = _whole(pixels[row, column]), alpha + (alpha >> 7)
-    low = ((under & _EVERY_OTHER) * (256 - share) + (colour & _EVERY_OTHER) * share) >> 8
-    high = ((under >> 8) & _EVERY_OTHER) * (256 - share) + ((255 << 16) | (colour >> 8 & 255)) * share
-    pixels[row, column] = (low & _EVERY_OTHER) | (high & (_EVERY_OTHER << 8))
 
 
 @inlined
@@ -84,7 +76,7 @@ def _triangle(
         return
     height, width = coverage.shape
     ua, va, packed = width * vertices[a, 2], height * vertices[a, 3], _whole(colours[a, 4])
-    colour = (packed & 255) << 16 | (packed & 0xFF00) | (packed >> 16 & 255)
+    colour = _OPAQUE | (packed & 255) << 16 | (packed & 0xFF00) | (packed >> 16 & 255)
     opacity = float(packed >> 24)
     of_b, of_c = _whole(colours[b, 4]) >> 24, _whole(colours[c, 4]) >> 24
     ox, oy = _slopes(of_b - opacity, of_c - opacity, xab, yab, xac, yac, area)
@@ -102,7 +94,7 @@ def _triangle(
         first, last = _narrowed(first, last, y, xc, yc, xa, ya)
         if uniform and alpha == 255:
             for column in range(first, last):
-                pixels[row, column] = (255 << 24) | colour
+                pixels[row, column] = colour
             continue
         for column in range(first, last):
             if not uniform:
@@ -112,7 +104,7 @@ def _triangle(
                 alpha = int(min(max(opacity + ox * across + oy * down, 0.0), 255.0) + 0.5)
                 alpha = alpha * _whole(coverage[v, u]) // 255
             if alpha > 0:
-                _lay(pixels, row, column, colour, alpha)
+                pixels[row, column] = blended(_whole(pixels[row, column]), colour, alpha + (alpha >> 7))
 
 
 @kernel

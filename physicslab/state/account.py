@@ -128,11 +128,6 @@ class Account:
         """Whether a step was made, after which the energy was finite."""
         return self.start is not None and math.isfinite(self._last[0])
 
-    def restart(self) -> None:
-        """Begin again with the next step."""
-        self.sums[:] = 0.0
-        self.start = None
-
     def pending(self, now: Balance, held: tuple[int, ...]) -> tuple[int, Balance]:
         """Return what has changed since the last step, between steps, and by which cause.
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.kernels.joints.blocks import ENTRY, FIRST, GIVES_WAY, GROUP, NODE, NODE_STATE, OF_NODE
-from physicslab.kernels.joints.soft import HOLD, LIMIT, MOTOR
+from physicslab.kernels.joints.terms import HOLD, LIMIT, MOTOR
 from physicslab.state.joint_rows import Row
 
 _MOST, _OF_SINGLE = 100_000, 3

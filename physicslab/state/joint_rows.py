@@ -12,7 +12,7 @@ from physicslab.components import Gear, Pin, Pulley, Rod, Rope, Slot, Transform,
 from physicslab.components.quantities import JOINT
 from physicslab.ecs.entity_index import EntityIndex
 from physicslab.ecs.table import Table
-from physicslab.kernels.joints import soft, terms
+from physicslab.kernels.joints import terms
 from physicslab.kernels.joints.terms import MeasuredTerm, TermEnd, measure_turned
 
 
@@ -32,11 +32,11 @@ class Measure(IntEnum):
 class Role(IntEnum):
     """Demand of a row on its quantity g."""
 
-    HOLD = soft.HOLD
+    HOLD = terms.HOLD
     """g = 0, by a force of any sign."""
-    LIMIT = soft.LIMIT
+    LIMIT = terms.LIMIT
     """g >= 0, by a force >= 0 and without bounce."""
-    MOTOR = soft.MOTOR
+    MOTOR = terms.MOTOR
     """dg/dt = ``target``, by a force of at most ``strongest``."""
 
 

@@ -9,6 +9,7 @@ from physicslab.components import Transform
 from physicslab.kernels import accounts
 from physicslab.kernels.joints import layout as packing
 from physicslab.kernels.joints.rows import constrain
+from physicslab.kernels.joints.terms import MOTOR
 from physicslab.state.joints import Joints
 from physicslab.state.ordering import cuthill_mckee
 from physicslab.state.packed import PackedForce, StateLayout
@@ -74,7 +75,7 @@ class JointForces(ForceSystem):
         numbers[first + m : first + 2 * m] = rates * (bodies.inverse_mass[moved] > 0.0)
         whole[packing.ROWS], whole[packing.COORDINATES], whole[packing.ENTRIES] = n, m, entries.sum()
         books = [(accounts.JOINTS, packing.HOLDING), (accounts.HAND, packing.DRIVEN)]
-        if (joints.role[order] == packing.MOTOR).any():
+        if (joints.role[order] == MOTOR).any():
             books.append((accounts.MOTORS, packing.POWERED))
         return PackedForce(constrain, numbers, whole, work_slots=tuple(books))
 
@@ -147,7 +148,7 @@ def _envelope(
     neighbours = {row: {other for body in bodies[row] for other in acting[body]} - {row} for row in given}
     # A row that depends on those before it gets no force: motors are last, and give way to what holds.
     ordered = (
-        sorted(one, key=lambda row: bool(joints.role[row] == packing.MOTOR))
+        sorted(one, key=lambda row: bool(joints.role[row] == MOTOR))
         for one in (given, cuthill_mckee(neighbours)[::-1])
     )
     orders = [(one, begins(one)) for one in ordered]

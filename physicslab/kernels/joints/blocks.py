@@ -47,7 +47,7 @@ _CARRIED = 2.0
 cloth. With 4 a wheel of 80 spokes, solved one by one, gains energy."""
 _L = 4
 """Where the numbers of L begin in those of an entry, behind those that are summed up."""
-_unsigned: Any = np.uint64
+unsigned: Any = np.uint64
 """Makes an index of which no loop tests whether it counts from the end."""
 
 
@@ -108,7 +108,7 @@ def _assemble(joints: Joints, k: int, inverse: Inverse) -> None:
             continue
         a11, a12, a21, a22 = 0.0, 0.0, 0.0, 0.0
         for s in range(joints.entries[n, SHARED], joints.entries[n + 1, SHARED]):
-            p, q = _unsigned(joints.shared[s, 0]), _unsigned(joints.shared[s, 1])
+            p, q = unsigned(joints.shared[s, 0]), unsigned(joints.shared[s, 1])
             mass, inertia = inverse.mass[body[p]], inverse.inertia[body[p]]
             x, y, turn = mass * g[q, 0], mass * g[q, 1], inertia * g[q, 2]
             a11 += g[p, 0] * x + g[p, 1] * y + g[p, 2] * turn
@@ -161,7 +161,7 @@ def _eliminate(joints: Joints, k: int, softness: float, gives_way: bool) -> None
     state[k, INVERSE_1], state[k, RATIO], state[k, INVERSE_2] = i1, ratio, i2
     begin, target = nodes[k, BELOW], nodes[k, UPDATES]
     for n in range(begin, nodes[k + 1, BELOW]):
-        i = _unsigned(entries[n, LOWER])
+        i = unsigned(entries[n, LOWER])
         if state[i, STATE] != ACTIVE:
             target += n - begin
             continue
@@ -190,11 +190,11 @@ def _eliminate_single(joints: Joints, k: int, softness: float, gives_way: bool) 
     state[k, INVERSE_1], state[k, RATIO], state[k, INVERSE_2] = inverse, 0.0, 0.0
     begin, target = nodes[k, BELOW], nodes[k, UPDATES]
     for n in range(begin, nodes[k + 1, BELOW]):
-        u, i = matrix[n, 0], _unsigned(entries[n, LOWER])
+        u, i = matrix[n, 0], unsigned(entries[n, LOWER])
         own = u * inverse
         matrix[n, _L], matrix[n, _L + 1], matrix[n, _L + 2], matrix[n, _L + 3] = own, 0.0, 0.0, 0.0
         for m in range(begin, n):
-            matrix[_unsigned(joints.targets[target]), 0] -= own * matrix[m, 0]
+            matrix[unsigned(joints.targets[target]), 0] -= own * matrix[m, 0]
             target += 1
         state[i, D_1] -= own * u
 
@@ -232,7 +232,7 @@ def substitute_forward(joints: Joints, first: int, end: int) -> float:
             continue
         x, y = state[k, CHANGE], state[k, CHANGE + 1]
         for n in range(nodes[k, BELOW], nodes[k + 1, BELOW]):
-            i = _unsigned(joints.entries[n, LOWER])
+            i = unsigned(joints.entries[n, LOWER])
             if state[i, STATE] == ACTIVE:
                 state[i, CHANGE] -= matrix[n, _L] * x + matrix[n, _L + 1] * y
                 state[i, CHANGE + 1] -= matrix[n, _L + 2] * x + matrix[n, _L + 3] * y
@@ -253,7 +253,7 @@ def substitute_back(joints: Joints, first: int, end: int) -> None:
             continue
         x, y = state[k, CHANGE], state[k, CHANGE + 1]
         for n in range(nodes[k, BELOW], nodes[k + 1, BELOW]):
-            i = _unsigned(joints.entries[n, LOWER])
+            i = unsigned(joints.entries[n, LOWER])
             if state[i, STATE] == ACTIVE:
                 x -= matrix[n, _L] * state[i, CHANGE] + matrix[n, _L + 2] * state[i, CHANGE + 1]
                 y -= matrix[n, _L + 1] * state[i, CHANGE] + matrix[n, _L + 3] * state[i, CHANGE + 1]

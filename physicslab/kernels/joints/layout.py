@@ -4,8 +4,6 @@ from typing import Any
 
 from physicslab.kernels import always_inlined
 
-HOLD, LIMIT, MOTOR = range(3)
-"""Demand of a row: g = 0; g >= 0; dg/dt = target."""
 ROWS, COORDINATES, ENTRIES, HOLDING, POWERED, DRIVEN, RANK, FIRST = range(8)
 """The first whole numbers: how many rows; how many coordinates move; how many entries the envelope of the
 matrix has; the accounts of what holds, of motors, and of what drives bodies, or -1; how many rows are

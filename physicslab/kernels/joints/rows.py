@@ -16,7 +16,7 @@ from physicslab.kernels.accounts import ENERGY, book
 from physicslab.kernels.forces.force_calls import force_kernel
 from physicslab.kernels.joints import layout as L
 from physicslab.kernels.joints.envelope import factorise, solve, substitute
-from physicslab.kernels.joints.terms import TermEnd, measure_term
+from physicslab.kernels.joints.terms import HOLD, MOTOR, TermEnd, measure_term
 from physicslab.kernels.ode.compensated import add
 
 _POSITION_ROUNDING = 4e-16
@@ -61,7 +61,7 @@ def measure_rows(q: Any, v: Any, numbers: Any, whole: Any) -> None:
             numbers[j + 5] = scale * one.turn_b
             error += scale * one.value
             rate += scale * one.rate
-        numbers[s + L.ERROR] = error - numbers[L.GIVEN * i + L.OFFSET] if whole[w + L.ROLE] == L.HOLD else 0.0
+        numbers[s + L.ERROR] = error - numbers[L.GIVEN * i + L.OFFSET] if whole[w + L.ROLE] == HOLD else 0.0
         numbers[s + L.RATE] = rate
 
 
@@ -119,12 +119,12 @@ def book_rows(q: Any, v: Any, given: Any, numbers: Any, whole: Any) -> None:
 
     Holding forces do no work but on driven bodies; the little that they do by rounding is an error.
     """
-    for role in (L.HOLD, L.MOTOR):
-        account = whole[L.HOLDING] if role == L.HOLD else whole[L.POWERED]
+    for role in (HOLD, MOTOR):
+        account = whole[L.HOLDING] if role == HOLD else whole[L.POWERED]
         if account < 0:
             continue
         power, px, py, spin, driven = given_by_rows(q, v, numbers, whole, role)
-        book(given, account, power if role == L.MOTOR else 0.0, px, py, spin)
+        book(given, account, power if role == MOTOR else 0.0, px, py, spin)
         if whole[L.DRIVEN] >= 0:
             given[whole[L.DRIVEN] + ENERGY] -= driven
 
@@ -271,8 +271,8 @@ def set_going(q: Numbers, v: Numbers, numbers: Numbers, whole: Rows) -> bool:
         return False
     _solved_changes(numbers, whole)
     for turn in range(2):
-        for role in (L.HOLD, L.MOTOR):
-            account = whole[L.HOLDING] if role == L.HOLD else whole[L.POWERED]
+        for role in (HOLD, MOTOR):
+            account = whole[L.HOLDING] if role == HOLD else whole[L.POWERED]
             if account >= 0:
                 power, px, py, spin, driven = given_by_rows(q, v, numbers, whole, role)
                 book(v, account, 0.5 * power, 0.5 * px, 0.5 * py, 0.5 * spin)

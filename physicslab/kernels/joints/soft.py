@@ -17,16 +17,14 @@ from physicslab.kernels.constraint.stirred import SETTLED, Stirred, is_stirred, 
 from physicslab.kernels.joints import blocks as B
 from physicslab.kernels.joints.blocks import (
     Joints,
-    _unsigned,
     can_move,
     factorise,
     substitute_back,
     substitute_forward,
+    unsigned,
 )
-from physicslab.kernels.joints.terms import TermEnd, measure_turned
+from physicslab.kernels.joints.terms import HOLD, LIMIT, MOTOR, TermEnd, measure_turned
 
-HOLD, LIMIT, MOTOR = range(3)
-"""Demand of a row (:class:`physicslab.state.joint_rows.Role`)."""
 _FASTEST, _DAMPING, _OF_SUBSTEPS = 60.0, 2.0, 0.25
 """The frequency [Hz] of the correction and its damping ratio; at most that share of the rate of substeps."""
 _TRIALS = 64
@@ -56,7 +54,7 @@ def _speeds(joints: Joints, k: int, motion: Motion) -> tuple[float, float]:
     """Return how fast the quantities of a node grow [m/s or rad/s]."""
     g, linear, first, second = joints.gradient, motion.linear, 0.0, 0.0
     for e in range(joints.nodes[k, B.ENDS], joints.nodes[k + 1, B.ENDS]):
-        body = _unsigned(joints.body[e])
+        body = unsigned(joints.body[e])
         x, y, spin = linear[body, 0], linear[body, 1], motion.angular[body]
         first += g[e, 0] * x + g[e, 1] * y + g[e, 2] * spin
         second += g[e, 3] * x + g[e, 4] * y + g[e, 5] * spin
@@ -68,7 +66,7 @@ def _apply(joints: Joints, k: int, motion: Motion, inverse: Inverse, first: floa
     """Change velocities by the impulses of a node."""
     g, linear = joints.gradient, motion.linear
     for e in range(joints.nodes[k, B.ENDS], joints.nodes[k + 1, B.ENDS]):
-        body = _unsigned(joints.body[e])
+        body = unsigned(joints.body[e])
         mass, inertia = inverse.mass[body], inverse.inertia[body]
         linear[body, 0] += mass * (first * g[e, 0] + second * g[e, 3])
         linear[body, 1] += mass * (first * g[e, 1] + second * g[e, 4])
@@ -140,7 +138,7 @@ def _given(joints: Joints, k: int, inverse: Inverse, acting: Acting) -> tuple[fl
     """Return how forces accelerate the quantities of a node."""
     g, force, first, second = joints.gradient, acting.force, 0.0, 0.0
     for e in range(joints.nodes[k, B.ENDS], joints.nodes[k + 1, B.ENDS]):
-        body = _unsigned(joints.body[e])
+        body = unsigned(joints.body[e])
         if not acting.unkicked[body]:
             x, y = inverse.mass[body] * force[body, 0], inverse.mass[body] * force[body, 1]
             spin = inverse.inertia[body] * acting.torque[body]
@@ -402,7 +400,7 @@ def book_momentum(joints: Joints, motion: Motion, inverse: Inverse, account: Vec
             first, second = first - state[k, B.NOTED], second - state[k, B.NOTED + 1]
         x, y, spin, driven = 0.0, 0.0, 0.0, 0.0
         for e in range(joints.nodes[k, B.ENDS], joints.nodes[k + 1, B.ENDS]):
-            body = _unsigned(joints.body[e])
+            body = unsigned(joints.body[e])
             px = first * g[e, 0] + second * g[e, 3]
             py = first * g[e, 1] + second * g[e, 4]
             turn = first * g[e, 2] + second * g[e, 5]

@@ -14,6 +14,8 @@ from physicslab.kernels import always_inlined
 ALONG, ALONG_A, DISTANCE, ANGLE = range(4)
 """n . d with an axis n of the world [m]; the same with an axis that turns with A; the length of d [m]; the
 angle of B less that of A [rad]."""
+HOLD, LIMIT, MOTOR = range(3)
+"""Demand of a row on its quantity g: g = 0; g >= 0; dg/dt = target."""
 
 
 class TermEnd(NamedTuple):

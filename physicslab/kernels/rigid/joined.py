@@ -11,6 +11,7 @@ from physicslab.kernels.accounts import ANGULAR_MOMENTUM, ENERGY, HAND, JOINTS, 
 from physicslab.kernels.joints import layout as L
 from physicslab.kernels.joints.envelope import factorise, solve
 from physicslab.kernels.joints.rows import book_rows, given_by_rows, measure_rows, push_by_rows
+from physicslab.kernels.joints.terms import HOLD, MOTOR
 from physicslab.kernels.rigid import features as F
 from physicslab.kernels.rigid.features import Points, RigidScene, SceneTuple, named_scene
 
@@ -110,10 +111,10 @@ def book_impulses(
 ) -> None:  # fmt: skip
     """Book what joints give as they answer ``impulses`` (2 count,) at points, at a moment."""
     answer(scene, points, measures, impulses, count)
-    for role in (L.HOLD, L.MOTOR):
-        cause = JOINTS if role == L.HOLD else MOTORS
+    for role in (HOLD, MOTOR):
+        cause = JOINTS if role == HOLD else MOTORS
         power, px, py, spin, driven = given_by_rows(q, v, scene.joint_numbers, scene.joints, role)
-        account[cause, ENERGY] += power if role == L.MOTOR else 0.0
+        account[cause, ENERGY] += power if role == MOTOR else 0.0
         account[cause, PX] += px
         account[cause, PY] += py
         account[cause, ANGULAR_MOMENTUM] += spin

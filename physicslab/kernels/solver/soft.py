@@ -244,9 +244,9 @@ def _advance(
                     )  # fmt: skip
                 if sleepers.number > 0:
                     book_held(
-                        position, gravity.mass, gravity.inverse_mass, inverse.mass, sleepers.forces,
-                        acting.uniform, gravity.gx, gravity.gy, gravity.other, span, joints.nodes,
-                        joints.body, joints.gradient, joints.impulse,
+                        position, gravity.mass, gravity.inverse_mass, gravity.inverse_inertia, inverse.mass,
+                        sleepers.forces, acting.uniform, gravity.gx, gravity.gy, gravity.other, span,
+                        joints.nodes, joints.body, joints.gradient, joints.impulse,
                         span / (impulse_dt if impulse_dt > 0.0 else h), account,
                     )  # fmt: skip
                 if damped:

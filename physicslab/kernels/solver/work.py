@@ -328,9 +328,9 @@ def book_gravity(
 
 @kernel
 def book_held(
-    position: Vectors, mass: Numbers, inverse_mass: Numbers, awake_inverse_mass: Numbers, forces: Vectors,
-    uniform: bool, gx: float, gy: float, other: int, h: float, nodes: Tables, body: Rows, gradient: Vectors,
-    impulse: Numbers, share: float, account: Vectors,
+    position: Vectors, mass: Numbers, inverse_mass: Numbers, inverse_inertia: Numbers,
+    awake_inverse_mass: Numbers, forces: Vectors, uniform: bool, gx: float, gy: float, other: int, h: float,
+    nodes: Tables, body: Rows, gradient: Vectors, impulse: Numbers, share: float, account: Vectors,
 ) -> None:  # fmt: skip
     """Book that forces pull bodies that sleep for ``h`` seconds, and joints and contacts hold them.
 
@@ -348,7 +348,9 @@ def book_held(
                 jx, jy = h * forces[i, 0] - jx, h * forces[i, 1] - jy
                 ox += jx
                 oy += jy
-                around += position[i, 0] * jy - position[i, 1] * jx + h * forces[i, 2]
+                around += position[i, 0] * jy - position[i, 1] * jx
+                if inverse_inertia[i] > 0.0:
+                    around += h * forces[i, 2]
     for k in range(len(nodes) - 1):
         row = nodes[k, B.ROW]
         first, second = share * impulse[row], 0.0

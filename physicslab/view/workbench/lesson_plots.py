@@ -5,7 +5,6 @@ from collections.abc import Sequence
 
 import numpy as np
 from imgui_bundle import ImVec2, imgui, implot
-from numpy.typing import NDArray
 
 from physicslab.diagnostics.samples import quantity_of
 from physicslab.ecs.quantity_text import Expression, InvalidText, dotted, evaluate, factor_of
@@ -18,8 +17,6 @@ from physicslab.view.toolkit.axes import finish_axes, plot_rect
 from physicslab.view.toolkit.style import as_vector
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.lesson import Curve, OpenLesson, Trial
-
-type _Numbers = NDArray[np.float64]
 
 _HEIGHT = 11.0
 """Height of a graph, in heights of the text."""
