@@ -117,7 +117,8 @@ class SpringFlow:
         fastest_first = np.argsort(-terms.max(axis=0), kind="stable")
         terms, (rows, a, b) = terms[:, fastest_first], springs[:, fastest_first]
         held = np.isin(layout.moving, np.concatenate((a, b)))
-        alone, drag = layout.moving[~held], state.table(Drag)
+        drag, alone = state.table(Drag), layout.moving[~held]
+        alone = np.pad(alone, (0, -len(alone) % WIDE))  # with the row of the world, which nothing moves
         order, moving = _in_order(a, b, layout.moving[held])
         self._moving, inverse = moving, bodies.inverse_mass[moving]
         (ends_a, ends_b), (p, spare) = self._ends(state, rows, a, b)

@@ -1,70 +1,85 @@
-"""The flow of drag and uniform gravity beside contacts, each body by itself."""
-
-import math
+"""The flow of drag and uniform gravity beside contacts, eight bodies at a time, each by itself."""
 
 from physicslab.kernels import Numbers, Rows, Vectors, always_inlined, inlined
 from physicslab.kernels.accounts import DAMPING, GRAVITY, book
 from physicslab.kernels.arguments import Motion
+from physicslab.kernels.float64x8 import (
+    Wide,
+    choose,
+    everywhere,
+    mask_bits,
+    put_numbers,
+    put_vectors,
+    root,
+    sum_of,
+    take,
+    take_numbers,
+    take_vectors,
+)
+from physicslab.kernels.wide_layout import WIDE
 
 _FOLLOWED = 0.05
 """Largest rate times step of what drag alone slows: a step is then right to 3e-9."""
-_EQUAL, _MOST = 1_250, 1e15
+_EQUAL, _MOST = 1_250, 2**50
 """Number of steps that are equally long: where there would be more, each goes by the speed, which decreases.
-Then the largest number that is reckoned with."""
+Then the largest number that is reckoned with. A number is a power of two."""
 
 
 @always_inlined
-def _slowed(x: float, y: float, linear: float, quadratic: float) -> float:
+def _slowed(x: Wide, y: Wide, linear: Wide, quadratic: Wide) -> Wide:
     """Return the share of its velocity that drag takes from a body in a second."""
-    return linear + quadratic * math.sqrt(x * x + y * y) if quadratic > 0.0 else linear
+    return linear + quadratic * root(x * x + y * y)
 
 
 @inlined
 def fall_in_drag(
     motion: Motion, rows: Rows, drag: Numbers, gx: float, gy: float, span: float, account: Vectors
 ) -> None:
-    """Move bodies that only drag and gravity act on, by steps of order 4, as many as each needs.
+    """Move bodies that only drag and gravity act on, by steps of order 4, as many as eight of them need.
 
-    ``drag`` (3 d,) has of each drag by speed and by its square, of its mass, and the mass. What drag takes is
-    integrated beside the motion, by the same method.
+    ``drag`` (3 d,) has of each drag by speed and by its square, of its mass, and the mass; where that is 0
+    the row is the world's, which fills the last eight. What drag takes is integrated beside the motion, by
+    the same method.
     """
-    n, sixth = len(rows), 1.0 / 6.0
-    taken, px, py, turned, fallen, weight = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    for i in range(n):
-        row, linear, quadratic, mass = rows[i], drag[i], drag[n + i], drag[2 * n + i]
-        x, y = motion.position[row, 0], motion.position[row, 1]
-        vx, vy = motion.linear[row, 0], motion.linear[row, 1]
+    n, sixth, weight = len(rows), 1.0 / 6.0, everywhere(0.0)
+    taken, px, py, turned, fallen = weight, weight, weight, weight, weight
+    for at in range(0, n, WIDE):
+        linear, quadratic, mass = take(drag, at), take(drag, n + at), take(drag, 2 * n + at)
+        fall_x, fall_y = choose(mass > 0.0, gx, 0.0), choose(mass > 0.0, gy, 0.0)
+        x, y = take_vectors(motion.position, rows, at)
+        vx, vy = take_vectors(motion.linear, rows, at)
         left = span
         while left > 0.0:
-            slows = _slowed(vx, vy, linear, 2.0 * quadratic)
-            steps = 1 + int(min(slows * left / _FOLLOWED, _MOST))
+            rate, steps = _slowed(vx, vy, linear, 2.0 * quadratic), 1
+            while steps < _MOST and mask_bits(rate * left > _FOLLOWED * steps) != 0:
+                steps *= 2
             h, brakes = left / steps, steps > _EQUAL
             for _ in range(1 if brakes else steps):
-                to_x, to_y, to_vx, to_vy = 0.0, 0.0, 0.0, 0.0
+                to_x, to_y, to_vx, to_vy = 0.0 * x, 0.0 * x, 0.0 * x, 0.0 * x
                 at_x, at_y, ux, uy = x, y, vx, vy
                 for stage in range(4):
                     share = sixth * h if stage == 0 or stage == 3 else 2.0 * sixth * h
                     slowed = _slowed(ux, uy, linear, quadratic)
-                    fx, fy = -slowed * ux, -slowed * uy
-                    taken -= share * mass * (fx * ux + fy * uy)
-                    px += share * mass * fx
-                    py += share * mass * fy
-                    turned += share * mass * (at_x * fy - at_y * fx)
-                    to_x += share * ux
-                    to_y += share * uy
-                    to_vx += share * (gx + fx)
-                    to_vy += share * (gy + fy)
+                    fx, fy, part = -slowed * ux, -slowed * uy, share * mass
+                    taken = taken - part * (fx * ux + fy * uy)
+                    px, py = px + part * fx, py + part * fy
+                    turned = turned + part * (at_x * fy - at_y * fx)
+                    ax, ay = fall_x + fx, fall_y + fy
+                    to_x, to_y = to_x + share * ux, to_y + share * uy
+                    to_vx, to_vy = to_vx + share * ax, to_vy + share * ay
                     ahead = h if stage == 2 else 0.5 * h
                     at_x, at_y = x + ahead * ux, y + ahead * uy
-                    ux, uy = vx + ahead * (gx + fx), vy + ahead * (gy + fy)
+                    ux, uy = vx + ahead * ax, vy + ahead * ay
                 mean_x = h * (x + 0.5 * to_x) - h * h / 12.0 * to_vx
                 mean_y = h * (y + 0.5 * to_y) - h * h / 12.0 * to_vy
-                fallen += mass * (mean_x * gy - mean_y * gx)
+                fallen = fallen + mass * (mean_x * gy - mean_y * gx)
                 x, y, vx, vy = x + to_x, y + to_y, vx + to_vx, vy + to_vy
             left = left - h if brakes else 0.0
-        weight += mass
-        motion.position[row, 0], motion.position[row, 1] = x, y
-        motion.linear[row, 0], motion.linear[row, 1] = vx, vy
-        motion.angle[row] += span * motion.angular[row]
-    book(account[DAMPING], 0, -taken, px, py, turned)
-    book(account[GRAVITY], 0, 0.0, weight * gx * span, weight * gy * span, fallen)
+        weight = weight + mass
+        put_vectors(motion.position, rows, at, x, y)
+        put_vectors(motion.linear, rows, at, vx, vy)
+        turns = take_numbers(motion.angular, rows, at)
+        put_numbers(motion.angle, rows, at, take_numbers(motion.angle, rows, at) + span * turns)
+    book(account[DAMPING], 0, -sum_of(taken), sum_of(px), sum_of(py), sum_of(turned))
+    falls = span * sum_of(weight)
+    book(account[GRAVITY], 0, 0.0, falls * gx, falls * gy, sum_of(fallen))

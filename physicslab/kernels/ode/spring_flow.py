@@ -33,7 +33,8 @@ MOST_TERMS = 10
 SIZES = 10
 """The whole numbers begin with: how many bodies move on springs, how many places there are, slots for
 springs, drifts of the method; whether there are dampers or arms, and so more numbers behind
-(:mod:`physicslab.kernels.ode.damped_flow`); arms; how many bodies are in drag alone; how many ends springs do
+(:mod:`physicslab.kernels.ode.damped_flow`); arms; how many bodies are in drag alone, made
+a multiple of eight by the row of the world; how many ends springs do
 not move; how many of the bodies on springs drag slows, made a multiple of eight; how many slots, from the
 first on, may have dampers. Then :attr:`Places.moving`, the springs' ends at A and B, and the ``ends`` that
 springs do not move; how far terms reach, and dampers at these ends; bodies on springs that drag slows; bodies
