@@ -192,9 +192,9 @@ class Springs(NamedTuple):
 
 
 class Packed(NamedTuple):
-    """The state as compiled forces read it, and positions from before bodies are moved apart (3, 3 rows + 1).
+    """The state as compiled forces read it, places before bodies are moved apart, and forces on that way.
 
-    Then the addresses of these forces (n, 3).
+    These are (4, 3 rows + 1); then come the addresses of the forces (n, 3).
     """
 
     state: Vectors

@@ -19,9 +19,9 @@ class Bodies:
         Forces [N] and torques [N m] added up in this substep; views of ``pull``.
     pull : float64 array (3 rows,)
         Both in one array: the x and y of each force in turn, then the torques.
-    packed : float64 array (3, 3 rows + 1)
+    packed : float64 array (4, 3 rows + 1)
         Positions and angles, and last the time [s]; velocities and angular velocities in the same order: as
-        compiled forces read them. Then room for positions.
+        compiled forces read them. Then room for positions, and for forces.
     inverse_mass, inverse_inertia : float64 arrays (rows,)
         Zero for what cannot be moved or turned: static, kinematic and held bodies.
     awake_inverse_mass, awake_inverse_inertia : float64 arrays (rows,)
@@ -58,7 +58,7 @@ class Bodies:
         self.columns = None, ()
         self.pull: NDArray[np.float64] = np.zeros(3 * rows)
         self.force, self.torque = self.pull[: 2 * rows].reshape(rows, 2), self.pull[2 * rows :]
-        self.packed: NDArray[np.float64] = np.zeros((3, 3 * rows + 1))
+        self.packed: NDArray[np.float64] = np.zeros((4, 3 * rows + 1))
         self.plain_shapes: ShapesTuple = blank_shapes(rows)
         self.shapes = with_names(self.plain_shapes)
         self.inverse_mass: NDArray[np.float64] = np.zeros(rows)

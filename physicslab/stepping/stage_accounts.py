@@ -17,6 +17,7 @@ from physicslab.kernels.forces.force_calls import add_forces
 from physicslab.kernels.solver import work
 from physicslab.state.packed import StateLayout, spring_ends, turned_anchors
 from physicslab.state.state import State
+from physicslab.systems.drag import DragSystem
 from physicslab.systems.spring import SpringSystem
 from physicslab.systems.system import ForceSystem, System
 
@@ -46,6 +47,8 @@ class StageAccounts:
         The cause by which the kicks of other forces are booked.
     moves_against : bool
         Whether forces act that are not uniform: the kernel books another work of moving bodies apart.
+    springs_alone : bool
+        Whether these are springs and what resists motion, of which a kernel knows what they store elsewhere.
     """
 
     kernels: tuple[Any, ...] = (work.book_kick, work.book_damping, work.book_held)
@@ -60,6 +63,7 @@ class StageAccounts:
         springs = any(isinstance(force, SpringSystem) for force in others)
         self.other = state.sleep.other = next((force.account for force in (*free, *others)), GRAVITY)
         self.moves_against = bool(others)
+        self.springs_alone = all(isinstance(force, SpringSystem | DragSystem) for force in others)
         # Momentum is booked to one cause by kernels: what is another's is then noted by itself.
         self._storing, others = (
             [force for force in others if force.potential is not None],

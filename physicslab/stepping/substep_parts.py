@@ -167,8 +167,11 @@ class SubstepParts:
             if stage is Stage.CONTACT and self._sleeps:
                 self._part(soft.WAKE, share)
             if stage is Stage.RELAX and accounts.moves_against:
-                self.hooks[len(self.parts)] = lambda state, h: accounts.book_overlap(state)
-                self._part(soft.OVERLAP)
+                if self.packs and accounts.springs_alone:
+                    self._part(soft.OVERLAP)
+                else:
+                    self.hooks[len(self.parts)] = lambda state, h: accounts.book_overlap(state)
+                    self._part(soft.MOVED)
             return ""
         if stage is Stage.KICK:
             later = 0.5 - self._kicked - 0.5 * share

@@ -153,6 +153,15 @@ def add_forces(q: Numbers, v: Numbers, force: Numbers, calls: Calls) -> None:
 
 
 @inlined
+def add_forces_over(q: Numbers, v: Numbers, span: float, force: Numbers, calls: Calls) -> None:
+    """Compute the sum of forces over ``span`` seconds."""
+    for i in range(len(force)):
+        force[i] = 0.0
+    for k in range(len(calls)):
+        _call(calls[k, 0], q, v, span, force, calls[k, 1], calls[k, 2])
+
+
+@inlined
 def accelerate(
     q: Numbers, v: Numbers, acceleration: Numbers, inverse_mass: Numbers, damping: Numbers, calls: Calls
 ) -> None:
@@ -171,10 +180,7 @@ def accelerate_over(
     ``acceleration`` is as long as ``q``; only what has an inverse mass is meaningful. ``damping`` (n,) [1/s],
     of v' = -c v, may be empty where nothing is damped.
     """
-    for i in range(len(acceleration)):
-        acceleration[i] = 0.0
-    for k in range(len(calls)):
-        _call(calls[k, 0], q, v, span, acceleration, calls[k, 1], calls[k, 2])
+    add_forces_over(q, v, span, acceleration, calls)
     for i in range(len(inverse_mass)):
         acceleration[i] *= inverse_mass[i]
     for i in range(len(damping)):

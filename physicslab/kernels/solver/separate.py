@@ -5,8 +5,9 @@ import math
 from physicslab.kernels import Numbers, Vectors, allocating, always_inlined, inlined
 from physicslab.kernels import wide_layout as L
 from physicslab.kernels.accounts import ANGULAR_MOMENTUM, ENERGY, OVERLAP
-from physicslab.kernels.arguments import Acting, Contacts, Motion, Near
+from physicslab.kernels.arguments import Acting, Contacts, Inverse, Motion, Near, Packed
 from physicslab.kernels.float64x8 import lesser, mask_bits, take
+from physicslab.kernels.forces.force_calls import add_forces_over
 from physicslab.kernels.near_counts import BEYOND_BOUNDS, DISC_BLOCKS, OUTSIDE, WEDGED
 from physicslab.kernels.records import Manifold, Points
 
@@ -19,6 +20,8 @@ _SWEEPS = 8
 """How often bodies are put out of fixed ones, as long as that leads one into another fixed one."""
 _SHARE = 0.6
 """Share of the way that they are moved in a substep."""
+_SLOWLY = 2.0**100
+"""Time [s] for a way on which nothing resists motion; a power of two, which rounds nothing."""
 BEYOND = 0.02
 """Share of its size by which a body is beyond the bounds where it is noted as outside: one that is pressed
 against them by others stays below."""
@@ -160,6 +163,28 @@ def _book(near: Near, motion: Motion, before: Vectors, inverse_mass: Numbers, ac
                 near.account[OVERLAP, ENERGY] -= acting.force[i, 0] * x + acting.force[i, 1] * y
             moved = x * motion.linear[i, 1] - y * motion.linear[i, 0]
             near.account[OVERLAP, ANGULAR_MOMENTUM] += moved / inverse_mass[i]
+
+
+@inlined
+def book_stored(packed: Packed, motion: Motion, acting: Acting, inverse: Inverse, account: Vectors) -> None:
+    """Book what springs store besides what :func:`separate` booked, for which forces stay as they were.
+
+    That is the work of the forces that they return over the way of bodies, on which these go so slowly that
+    dampers and drag do nothing.
+    """
+    q, v, before, force = packed.state[0], packed.state[1], packed.state[2], packed.state[3]
+    n = len(motion.angle)
+    for i in range(n):
+        x, y = motion.position[i, 0], motion.position[i, 1]
+        q[2 * i], q[2 * i + 1] = 0.5 * (before[2 * i] + x), 0.5 * (before[2 * i + 1] + y)
+        v[2 * i], v[2 * i + 1] = (x - before[2 * i]) / _SLOWLY, (y - before[2 * i + 1]) / _SLOWLY
+        q[2 * n + i], v[2 * n + i] = motion.angle[i], 0.0
+    add_forces_over(q, v, _SLOWLY, force, packed.calls)
+    for i in range(n):
+        if inverse.mass[i] > 0.0:
+            x, y = _SLOWLY * v[2 * i], _SLOWLY * v[2 * i + 1]
+            other_x, other_y = acting.force[i, 0] - force[2 * i], acting.force[i, 1] - force[2 * i + 1]
+            account[OVERLAP, ENERGY] += other_x * x + other_y * y
 
 
 @allocating

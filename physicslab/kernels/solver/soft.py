@@ -45,6 +45,7 @@ from physicslab.kernels.sleep.edits import find_pushed
 from physicslab.kernels.sleep.islands import count_rest, find_touched
 from physicslab.kernels.solver.finer import factor_for
 from physicslab.kernels.solver.meet_again import is_outdated
+from physicslab.kernels.solver.separate import book_stored
 from physicslab.kernels.solver.stages import (
     find_touching,
     press,
@@ -66,14 +67,14 @@ sleeping body is touched or pushed; at the end of a step, an island may fall asl
 bounds, or the next step needs another number of substeps, or a joint has to break."""
 (
     HOOK, DRIFT, UNIFORM, PACKED, KICK, PAIRS, FIND, WIDEN, WAKE, IMPACTS, PAIRS_AGAIN, LATER_IMPACTS,
-    PREDICT, SOLVE, RELAX, OVERLAP, SPRINGS,
-) = range(17)  # fmt: skip
+    PREDICT, SOLVE, RELAX, OVERLAP, MOVED, SPRINGS,
+) = range(18)  # fmt: skip
 """The parts of a substep: what is Python's; bodies move; uniform forces, or compiled ones, are added up, and
 kick; whether the near pairs are still all that are near; where bodies touch; steady contacts get into blocks,
 once a step; whether sleeping bodies are to be woken; impacts; whether the near pairs still are all after
 these, and what they have left swift meets others; velocities are predicted; the impulses of contacts, and
-those after bodies have moved; what is Python's if these have moved bodies apart. From SPRINGS on, the bodies
-of the flow of that number move, or Python moves them."""
+those after bodies have moved; what springs store elsewhere, if these have moved bodies apart, and what is
+Python's if they have. From SPRINGS on, the bodies of the flow of that number move, or Python moves them."""
 SHARE, DRIFTED, LATER = range(3)
 """Where in ``Course.times`` these are."""
 COSTS, STEPS = 8, 7
@@ -326,7 +327,7 @@ def _advance(
                 )  # fmt: skip
                 now = charge(cost, RESOLVE, now)
             elif what == RELAX:
-                if part + 1 < len(course.parts) and course.parts[part + 1] == OVERLAP:
+                if part + 1 < len(course.parts) and OVERLAP <= course.parts[part + 1] <= MOVED:
                     for i in range(len(angle)):
                         packed.state[2, 2 * i], packed.state[2, 2 * i + 1] = position[i, 0], position[i, 1]
                 half = 0.5 * impulse_dt
@@ -337,7 +338,10 @@ def _advance(
                 weighed = False
                 now = charge(cost, RESOLVE, now)
             elif what == HOOK or _moved(motion, packed.state[2]):
-                why = PYTHON
+                why = PYTHON if what != OVERLAP else ALL
+                if what == OVERLAP:
+                    book_stored(packed, motion, acting, inverse, account)
+                    now = charge(cost, RESOLVE, now)
             if why != ALL:
                 return why, done, substep, part, finished, bounced, evaluations, impulse_dt
             part += 1
