@@ -79,20 +79,25 @@ class Soft(Stepper):
 
     def advance(self, state: State, h: float, steps: int) -> Advance:
         """Make ``steps`` steps or fewer; where one fails, those before it are counted."""
+        span = self._span(state, h)
+        refill(state)
+        if state.sleep.count:
+            measure_joints(state)
+        return self._make(state, span, steps, self._open(state) if self.keeps_balance else -1)
+
+    def _span(self, state: State, h: float) -> Span:
+        """Return the span of coming steps of ``h`` seconds, in as many substeps as loads need now."""
         contacts, parts = state.contacts, divisions(state, h)
         unequal = state.bodies.unequal and state.has_forces
         if not unequal:
             contacts.substep_factor = 1
         factor = max(contacts.substep_factor, falls_far(state, h / parts))
         state.substeps = factor * state.simulation.substeps
-        refill(state)
-        if state.sleep.count:
-            measure_joints(state)
         rested = min(h, state.simulation.dt)  # of a divided step only the end is observed
         finer = contacts.substep_factor if unequal else 0
         span = Span(parts * state.substeps, h / parts / state.substeps, h, state.time, rested, finer)
         self._call = span, parts
-        return self._make(state, span, steps, self._open(state) if self.keeps_balance else -1)
+        return span
 
     def goes_on(self, state: State) -> bool:
         """Whether the loop has gone through, with all bodies awake."""
@@ -109,16 +114,20 @@ class Soft(Stepper):
         parts, wanted = self._call[1], steps
         steps = 1 if self.hooks or parts > 1 else min(steps, self._max_steps)
         began = working_ns() if wanted > 1 else 0
-        if self._broad_phase is not None and (state.contacts.stale or not again):
-            self._broad_phase.follow_rows(state)
-        if self._contact is not None:
-            self._contact.begin_step(state)
-        if self.substeps.split is not None:
-            self.substeps.split.begin(state, span.dt)
         if not again:
             self._note_energy(state)
-        logged = state.contacts.logged
-        made = self.substeps.go_through(state, span, steps, cause, again=again)
+        logged, start, made = state.contacts.logged, state.time, 0
+        try:
+            while True:
+                made += self._go_through(state, span, steps - made, cause, again=again)
+                if made >= steps or state.sleep.count or not self.substeps.needs_others:
+                    break
+                state.time = time_after(start, span.dt, made)
+                span, cause, again = self._span(state, span.dt), -1, False
+        except BaseException:
+            state.steps += made
+            raise
+        state.time = start
         if state.contacts.logged > logged + 1:
             state.contacts.order_log(logged)
         if self.hooks:
@@ -132,6 +141,16 @@ class Soft(Stepper):
         if wanted > 1:
             self._max_steps = max(1, min(_MAX_STEPS, made * _CALL_NS // max(working_ns() - began, 1)))
         return Advance(made, parts)
+
+    def _go_through(self, state: State, span: Span, steps: int, cause: int, *, again: bool) -> int:
+        """Make steps as long as they have the same substeps; return how many."""
+        if self._broad_phase is not None and (state.contacts.stale or not again):
+            self._broad_phase.follow_rows(state)
+        if self._contact is not None:
+            self._contact.begin_step(state)
+        if self.substeps.split is not None:
+            self.substeps.split.begin(state, span.dt)
+        return self.substeps.go_through(state, span, steps, cause, again=again)
 
     def _note_energy(self, state: State) -> None:
         """Note what contacts have taken at most and given since; from here on where time went back."""

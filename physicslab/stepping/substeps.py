@@ -94,8 +94,9 @@ class Substeps:
         The flow of bodies on springs and in drag, if not kicks.
     uniform : bool
         Whether no forces act but uniform ones that are compiled.
-    went_through : bool
-        Whether the loop made the last step to its end, and has nothing to leave to Python after it.
+    went_through, needs_others : bool
+        Whether the loop made the last step to its end, and has nothing to leave to Python after it, or only
+        that the next step needs another number of substeps.
     """
 
     def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None:
@@ -126,7 +127,7 @@ class Substeps:
         self._held: tuple[Any, ...] | None = None  # arguments of the last call, where they hold for the next
         self._packed: tuple[list[NDArray[np.int64]], NDArray[np.int64]] = [], np.zeros((0, 3), np.int64)
         self._steps = self._substeps = self._nanoseconds = 0
-        self.went_through = False
+        self.went_through = self.needs_others = False
 
     # ---- going through them --------------------------------------------------------------------------------
 
@@ -183,6 +184,7 @@ class Substeps:
         if span.finer and why != soft.ALL:
             state.contacts.substep_factor = self._needed_factor(state, span)
         self.went_through = why == soft.ALL and not self._hooked
+        self.needs_others = why == soft.OTHER_SUBSTEPS and not self._hooked
         return made if self._parts else steps
 
     def _overloaded(self, state: State, span: Span) -> bool:
