@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from physicslab.components.shape import KINDS, Kind
 from physicslab.kernels.geometry import cores, manifold, sweep
+from physicslab.kernels.geometry import outline as turning
 from physicslab.kernels.geometry.cores import Touch
 from physicslab.kernels.geometry.outline import Outline, Way
 from physicslab.kernels.geometry.shapes import BOX
@@ -16,6 +17,7 @@ from physicslab.kernels.interpreter import fallback_of
 from physicslab.state.shapes import Register
 
 touch_cores, sweep_cores = fallback_of(cores.touch_cores), fallback_of(sweep.sweep_outlines)
+least_gap, rotation = fallback_of(sweep.least_gap), fallback_of(turning.rotation)
 box_box, circle_box, pose_at = (
     fallback_of(manifold.box_box),
     fallback_of(manifold.circle_box),
@@ -152,6 +154,32 @@ def test_a_sweep_ends_where_they_touch(
     for earlier in np.linspace(0.0, t - 1e-6, 20).tolist():
         moved, at_a, at_b = pose_at(path, spin_a, spin_b, one, other, earlier)
         assert touch(moved.dx, moved.dy, at_a, at_b).gap > 0.0
+
+
+@given(
+    kinds, kinds, st.floats(0.5, 4.0), angles, angles, angles, extents, extents, st.floats(-1.0, 1.0),
+    st.floats(-1.0, 1.0), st.floats(-0.5, 0.5), st.floats(-0.5, 0.5), st.sampled_from((-0.5, 0.5, 1.0)),
+)  # fmt: skip
+def test_they_come_no_nearer_than_the_line_to_the_least_gap(
+    kind: str, other_kind: str, d: float, way: float, turn_a: float, turn_b: float, a: float, b: float,
+    ux: float, uy: float, spin_a: float, spin_b: float, share: float,
+) -> None:  # fmt: skip
+    place = Way(d * math.cos(way), d * math.sin(way), ux, uy)
+    one, other = outline(kind, turn_a, a, b), outline(other_kind, turn_b, b, a)
+    found: Touch = touch_cores(place, one, other, POOL, math.inf, 0)
+    assume(found.gap > 0.0)
+    least = least_gap(found, place, spin_a, spin_b, share, one, other, POOL)
+    for part in np.linspace(0.0, 1.0, 9):
+        moved, at_one, at_other = pose_at(place, spin_a, spin_b, one, other, part * share)
+        apart = distance(corners(at_one), corners(at_other, moved.dx, moved.dy)) - one.radius - other.radius
+        assert apart >= (1.0 - part) * found.gap + part * least - 1e-9
+    straight = least_gap(found, place, 0.0, 0.0, share, one, other, POOL)
+    assert straight == pytest.approx(found.gap + share * (found.nx * ux + found.ny * uy), abs=1e-12)
+
+
+@given(st.floats(-7.0, 7.0) | st.floats(-0.11, 0.11))
+def test_small_angles_turn_by_their_series(angle: float) -> None:
+    assert rotation(angle) == pytest.approx((math.cos(angle), math.sin(angle)), rel=1e-15, abs=1e-17)
 
 
 def test_two_capsules_on_each_other_have_two_points_and_end_to_end_one() -> None:

@@ -73,14 +73,20 @@ def _beside(x: float, y: float, a: Outline, b: Outline) -> _Beside:
 
 
 @always_inlined
+def lowest(mx: float, my: float, outline: Outline, pool: Vectors) -> float:
+    """Return where a core begins along a direction that is given in its own directions [m]."""
+    low, mx, my = math.inf, outline.half_x * mx, outline.half_y * my
+    for j in range(outline.first, outline.first + outline.vertices):
+        low = min(low, mx * pool[j, 0] + my * pool[j, 1])
+    return low
+
+
+@always_inlined
 def _clear_of(k: int, lies: _Beside, a: Outline, b: Outline, pool: Vectors) -> float:
     """Return how far all of the core of B, which ``lies`` beside A, is beyond face k of that of A [m]."""
     nx, ny = _own_normal(k, a, pool)
     from_x, from_y = a.half_x * pool[a.first + k, 0], a.half_y * pool[a.first + k, 1]
-    mx, my = b.half_x * (lies.c * nx + lies.s * ny), b.half_y * (lies.c * ny - lies.s * nx)
-    nearest = math.inf
-    for j in range(b.first, b.first + b.vertices):
-        nearest = min(nearest, mx * pool[j, 0] + my * pool[j, 1])
+    nearest = lowest(lies.c * nx + lies.s * ny, lies.c * ny - lies.s * nx, b, pool)
     clear: float = nearest + (nx * (lies.x - from_x) + ny * (lies.y - from_y))
     return clear
 

@@ -6,6 +6,9 @@ from typing import NamedTuple
 from physicslab.kernels import Numbers, Vectors, always_inlined, inlined
 from physicslab.kernels.geometry.shapes import BOX, Shapes, segment_of
 
+_SMALL = 0.1
+"""Angle [rad] up to which five terms of the series of cosine and sine are right to rounding."""
+
 
 class Outline(NamedTuple):
     """A row of the table of shapes, and how it lies.
@@ -68,13 +71,24 @@ def on_segment(outline: Outline, wall: int) -> Outline:
     return Outline(box, c, s, half_x, half_y, radius, vertices, first, thin)
 
 
+@always_inlined
+def rotation(angle: float) -> tuple[float, float]:
+    """Return cosine and sine of an angle [rad], by their series where it is as small as a substep's."""
+    if abs(angle) > _SMALL:
+        return math.cos(angle), math.sin(angle)
+    z = angle * angle
+    cosine = 1.0 - z * (1.0 / 2.0 - z * (1.0 / 24.0 - z * (1.0 / 720.0 - z * (1.0 / 40320.0))))
+    sine = angle * (1.0 - z * (1.0 / 6.0 - z * (1.0 / 120.0 - z * (1.0 / 5040.0 - z * (1.0 / 362880.0)))))
+    return cosine, sine
+
+
 @inlined
 def turned(outline: Outline, angle: float) -> Outline:
     """Return an outline turned by an angle [rad]."""
     box, c, s, half_x, half_y, radius, vertices, first, thin = outline
     if angle == 0.0 or vertices < 2:
         return outline
-    cosine, sine = math.cos(angle), math.sin(angle)
+    cosine, sine = rotation(angle)
     return Outline(
         box, c * cosine - s * sine, s * cosine + c * sine, half_x, half_y, radius, vertices, first, thin
     )  # fmt: skip

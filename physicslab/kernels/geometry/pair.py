@@ -11,6 +11,7 @@ from physicslab.kernels.geometry.segment import touch_outlines
 from physicslab.kernels.geometry.sweep import (
     MISS,
     is_swift,
+    least_gap,
     opening,
     pose_at,
     sweep_box_box,
@@ -270,13 +271,22 @@ def _put_points(
 
 
 @inlined
-def _stays_apart(found: Touch, way: Way, swing: float, start: float, a: Outline, b: Outline) -> bool:
+def _stays_apart(
+    found: Touch, way: Way, turn_a: float, turn_b: float, swing: float, start: float, a: Outline, b: Outline,
+    pool: Vectors,
+) -> bool:  # fmt: skip
     """Whether two convex shapes stay apart along the normal of now, from ``start`` until a substep later."""
     if is_segment(a) or is_segment(b):
         return False
-    opens, least = found.nx * way.ux + found.ny * way.uy, _JUST_MEETING * 2.0 * min(a.thin, b.thin)
-    end = 1.0 + start
-    return bool(found.gap + start * (opens + swing) > least and found.gap + end * (opens - swing) > least)
+    gap, opens, end = found.gap, found.nx * way.ux + found.ny * way.uy, 1.0 + start
+    least = _JUST_MEETING * 2.0 * min(a.thin, b.thin)
+    if gap + start * (opens + swing) > least and gap + end * (opens - swing) > least:
+        return True
+    return bool(
+        gap > least
+        and least_gap(found, way, turn_a, turn_b, end, a, b, pool) > least
+        and least_gap(found, way, turn_a, turn_b, start, a, b, pool) > least
+    )
 
 
 @inlined
@@ -302,7 +312,7 @@ def touch_rounded(
     if found.gap > near and not ((fast or swift) and found.gap <= travel + speculative_margin):
         return
     place, share, t = way, 0.0, MISS
-    if fast and not _stays_apart(found, way, swing, start, a, b):
+    if fast and not _stays_apart(found, way, turn_a, turn_b, swing, start, a, b, pool):
         t = sweep_outlines(way, turn_a, turn_b, start, a, b, pool)
         if t <= 1.0:
             meeting, met_a, met_b = pose_at(way, turn_a, turn_b, a, b, start + t)

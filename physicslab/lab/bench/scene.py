@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 
 from physicslab.components import Transform, Velocity
 from physicslab.diagnostics.energy import measure_energy
-from physicslab.diagnostics.joints import joint_states
 from physicslab.ecs.vector import Vector2
 from physicslab.lab.case import Case
 from physicslab.lab.peers.peer import find_contacts
+from physicslab.state.joint_figures import figures_of
 from physicslab.world import World
 
 type When = Literal["settled", "throughout", "end"]
@@ -106,7 +106,7 @@ def _overlap(world: World, before: Moment) -> float:
 
 def _stretch(world: World, before: Moment) -> float:
     world.synchronise()
-    return max((joint.stretch for joint in joint_states(world)), default=0.0)
+    return float(figures_of(world).stretch.max()) if world.joints.joints else 0.0
 
 
 def _energy(world: World, before: Moment) -> float:
