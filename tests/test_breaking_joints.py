@@ -215,8 +215,8 @@ def test_a_step_tried_by_soft_contacts_breaks_nothing_before_the_moment_is_found
     world.spawn(Transform((1.2, 1.6), 2.0), Velocity((-1.3, 0.9), -3.4), Mass(0.1), ball, name="ball")
     world.spawn(Transform((2.5, 1.0), 2.8), Velocity((-0.1, -1.1), 0.9), bar, name="bar")
     world.spawn(Transform((5.1, 1.5), 1.2), Velocity((-2.2, -1.8), -7.9), Mass(1.5), weight, name="weight")
-    anchors = {"anchor_a": (-0.9, -1.8), "anchor_b": (-0.6, 1.9)}
-    world.spawn(Pin(a="ball", b="weight", motor_speed=4.6, breaks=4.2, **anchors))
+    joint = Pin("ball", "weight", (-0.9, -1.8), (-0.6, 1.9), motor_speed=4.6, breaks=4.2)
+    world.spawn(joint)
     water = Shape.box(20.0, 2.0), Medium(density=1.35, quadratic=1.37)
     world.spawn(Transform((0.0, -1.0)), *water)
     for _ in range(60):
