@@ -459,6 +459,20 @@ def test_an_edit_that_is_taken_back_and_made_again_reaches_its_island() -> None:
     assert velocity.linear.x == 66.0
 
 
+def test_a_world_that_is_still_one_goes_on_from_a_file_within_a_step_of_another_length() -> None:
+    """Impulses of the shortened step were taken for those of a whole one, where a new world has islands."""
+    world = World(simulation=SimulationConfig(contacts="soft", collisions="step"))
+    floor(world)
+    bodies = [*few(world), disc(world, 1.5, 0.3, 30.0)]
+    world.run(seconds=1.805)
+    scene = write_scene(world)
+    assert scene["islands"] == []
+    loaded = read_scene(scene)
+    for each in (world, loaded):
+        each.run(steps=3)
+    assert np.array_equal(motion(world, bodies), motion(loaded, bodies))
+
+
 def test_a_file_of_islands_is_written_alike_where_one_has_touched_nothing_yet() -> None:
     world = World()
     floor(world)

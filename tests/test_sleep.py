@@ -742,6 +742,29 @@ def test_joints_hold_what_hangs_and_sleeps(idle: bool, speed: float) -> None:
     assert sleepers(world) == ({bob} if speed else {slider, bob})
 
 
+@pytest.mark.parametrize("idle", [False, True])
+def test_what_wakes_in_a_substep_has_its_forces_and_its_damping_in_the_accounts(idle: bool) -> None:
+    """Half a kick of thrust was booked as gravity, and what damping takes of it as an error of the method."""
+    laws = PhysicsConfig(linear_damping=0.5, angular_damping=0.5)
+    world = World(physics=laws, simulation=SimulationConfig(sleeping=True, contacts="soft"))
+    box(world, (0.0, -0.5), width=9.0, height=1.0, static=True, friction=0.9)
+    crate = box(world, (0.0, 0.5), width=1.0, height=1.0, friction=0.9)
+    world.add(crate, Thrust(force=(2.0, 0.0), torque=0.1))
+    ball = circle(world, (0.0, 2.0), radius=0.2, velocity=(0.0, 8.0))
+    if idle:
+        world.install(Idle())
+    while crate not in sleepers(world):
+        world.step()
+    while sleepers(world):
+        world.step()
+    account, mass = measure_account(world), world.component(ball, Mass).mass
+    assert account.momentum["thrust"].x == pytest.approx(2.0 * world.time, rel=1e-12)
+    pull = -9.81 * world.time * (mass + world.component(crate, Mass).mass)
+    assert tuple(account.momentum["gravity"]) == pytest.approx((0.0, pull), abs=1e-10)
+    assert account.momentum["numerical"].magnitude < 1e-10
+    assert account.angular_momentum["thrust"] == pytest.approx(-0.9 * world.time, rel=1e-4)
+
+
 @pytest.mark.parametrize("awake", [False, True])
 def test_joints_of_a_file_hold_what_sleeps_there(awake: bool, tmp_path: Path) -> None:
     """Contacts had all of it in the accounts until a kernel measured the joints."""

@@ -139,11 +139,16 @@ def measure_joints(state: State) -> None:
         fallback_of(begin_joints)(joints, motion, rotations, inverse, acting, 0.0)
 
 
+def pull_of(state: State) -> Vector2:
+    """Return uniform gravity [m/s^2], zero where there is none."""
+    return state.physics.gravity if state.physics.gravity_mode == "linear" else Vector2()
+
+
 def book_sleep(state: State, asleep: _Marks, h: float) -> None:
     """Book that forces pull bodies (rows,) that sleep for ``h`` seconds, and what holds them."""
     measure_joints(state)
     bodies, acted, joints = state.bodies, state.contacts.impulse_dt, Joints(*joints_in(state))
-    gravity = state.physics.gravity if state.physics.gravity_mode == "linear" else Vector2()
+    gravity = pull_of(state)
     work.book_held(
         state.table(Transform)["position"], state.table(Mass)["mass"], bodies.inverse_mass,
         bodies.inverse_inertia, np.where(asleep, 0.0, bodies.inverse_mass), state.sleep.forces,

@@ -254,7 +254,7 @@ def _solver(snapshot: WorldSnapshot) -> dict[str, Any]:
     """
     contacts, simulation = snapshot.contacts, snapshot.simulation
     usual = contacts.impulse_dt in (0.0, simulation.dt / simulation.substeps)
-    span = {} if usual or snapshot.islands is not None else {"span": contacts.impulse_dt}
+    span = {} if usual or snapshot.islands else {"span": contacts.impulse_dt}
     finer = {"finer": contacts.substep_factor} if contacts.substep_factor != 1 else {}
     return span | finer | ({"chosen": list(snapshot.chosen)} if snapshot.chosen is not None else {})
 

@@ -5,10 +5,17 @@ from numpy.typing import NDArray
 
 from physicslab.components import Charge, Mass, Shape, Transform, Velocity
 from physicslab.contacts.arguments import do_stage, near_in
-from physicslab.contacts.islands import book_sleep, check_edits, fall_asleep, keep_places, wake, wake_all
+from physicslab.contacts.islands import (
+    book_sleep,
+    check_edits,
+    fall_asleep,
+    keep_places,
+    pull_of,
+    wake,
+    wake_all,
+)
 from physicslab.ecs.sentences import sentence
 from physicslab.kernels import Plain, motion, near_counts
-from physicslab.kernels.accounts import GRAVITY
 from physicslab.kernels.arguments import Inverse
 from physicslab.kernels.sleep import edits, islands
 from physicslab.kernels.solver import soft, work
@@ -36,7 +43,7 @@ class SleepSystem(System):
     engine = True
     kernels = (
         *Sleep.kernels, islands.count_rest, islands.find_held, islands.find_touched, edits.find_pushed,
-        motion.kick, work.book_kick, work.book_held,
+        motion.kick, work.book_kick, work.book_damping, work.book_held,
     )  # fmt: skip
 
     def why_left_out(self, state: State) -> str | None:
@@ -92,17 +99,18 @@ class SleepSystem(System):
         contacts, bodies, velocity = state.contacts, state.bodies, state.table(Velocity)
         if state.has_forces:
             inverse, before = np.where(woken, bodies.inverse_mass, 0.0), state.kick_before_contacts * h
+            position, sums, gravity = state.table(Transform)["position"], state.account.sums, pull_of(state)
+            moved = velocity["linear"], velocity["angular"], bodies.force, bodies.torque
+            yields = inverse, bodies.inverse_inertia, bodies.sub_integrated
+            damping = state.physics.linear_damping, state.physics.angular_damping
             work.book_kick(
-                state.table(Transform)["position"], bodies.force, bodies.torque, state.table(Mass)["mass"],
-                inverse, bodies.inverse_inertia, bodies.sub_integrated, 0.0, 0.0, GRAVITY, before,
-                state.account.sums,
+                position, bodies.force, bodies.torque, state.table(Mass)["mass"], *yields, gravity.x,
+                gravity.y, state.sleep.other, before, sums,
             )  # fmt: skip
             book_sleep(state, woken, -before)  # that it was held in this kick
-            motion.kick(
-                velocity["linear"], velocity["angular"], bodies.force, bodies.torque, inverse,
-                bodies.inverse_inertia, bodies.sub_integrated, state.physics.linear_damping,
-                state.physics.angular_damping, before,
-            )  # fmt: skip
+            if any(damping):
+                work.book_damping(position, *moved, *yields, *damping, before, 0.5 * (h - before), sums)
+            motion.kick(*moved, *yields, *damping, before)
         scalar = contacts.scalar[: contacts.scalar_count]
         near = contacts.manifolds[scalar]
         theirs = np.ascontiguousarray(scalar[woken[near["a"]] | woken[near["b"]]])
