@@ -97,6 +97,22 @@ def test_moving_bodies_apart_does_no_work_against_drag() -> None:
     assert abs(account.energy["numerical"]) < 1e-9
 
 
+@pytest.mark.parametrize("damping", [0.0, 5.0])
+def test_what_springs_store_where_bodies_are_moved_apart_is_booked(damping: float) -> None:
+    """In the compiled loop as without it; dampers and drag take nothing on that way, which has no time."""
+    held = {"a": "low", "b": "high", "rest_length": 0.1, "stiffness": 300.0, "damping": damping}
+    off = {"a": "low", "b": "aside", "anchor_b": [0.2, 0.1], "rest_length": 0.5, "stiffness": 200.0}
+    document = scene(
+        fixed(0.0, -0.5), body(0.0, 0.1, id="low", Drag={"linear": 1.0}), body(0.05, 0.22, 0.3, id="high"),
+        body(0.5, 0.1, 0.1, id="aside"), {"Spring": held}, {"Spring": off},
+    )  # fmt: skip
+    (world, account), (_, other) = after(document, 5), after(document, 5, LooksAtSolving())
+    assert isinstance(world.stepper, Soft) and not world.stepper.hooks
+    assert abs(account.energy["overlap"]) > 0.01
+    assert account.energy["overlap"] == pytest.approx(other.energy["overlap"], rel=1e-9)
+    assert abs(account.energy["numerical"]) < 1e-5
+
+
 def test_a_magnetic_field_beside_a_joint_that_is_closed_books_nothing() -> None:
     bob = {"id": "bob", **body(-3.0, 2.0), "Charge": {"charge": 1.0}}
     rope = {"Rope": {"b": "bob", "anchor_a": [0.0, 0.0], "length": 2.5}}
