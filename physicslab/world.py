@@ -173,7 +173,8 @@ class World(Facade):
                 close_account(self, self.schedule.forces)
             loaded = repeat is None and bears < math.inf and (steps > 1 or self.islands.divides)
             load = load_of(self) if loaded else 0.0
-            if load > bears and not any(isinstance(part.stepper, Soft) for part in self.parts):
+            tried = bears == -math.inf  # a trial leaves nothing behind, by whatever stepper it was made
+            if tried or (load > bears and not any(isinstance(part.stepper, Soft) for part in self.parts)):
                 raise Overloaded(made.steps, load)
             self.schedule.run(Stage.FINISH, self, h * made.steps)
         self.steps += made.steps

@@ -10,7 +10,7 @@ import pytest
 
 from physicslab import World, load_scene, save_scene
 from physicslab.cli import main
-from physicslab.components import Gear, Mass, Pin, Rod, Rope, Shape, Transform, Velocity, Weld
+from physicslab.components import Gear, Mass, Medium, Pin, Rod, Rope, Shape, Transform, Velocity, Weld
 from physicslab.diagnostics.energy import measure_account
 from physicslab.diagnostics.step_watch import StepWatch
 from physicslab.diagnostics.warnings import find_warnings
@@ -206,3 +206,20 @@ def test_a_joint_that_is_told_on_the_way_to_break_does() -> None:
     world.component(world.entity("rope"), Rope).breaks = 1.0
     world.run(seconds=0.1)
     assert [one.label for one in breaks_of(world.schedule.systems, world.time)] == ["rope"]
+
+
+def test_a_step_tried_by_soft_contacts_breaks_nothing_before_the_moment_is_found() -> None:
+    """The motor pulls the ball to the bar: shorter steps of the last one are left to soft contacts."""
+    ball, bar, weight = Shape.circle(0.3), Shape.capsule(0.52, 0.12), Shape.circle(0.39)
+    world = World()
+    world.spawn(Transform((1.2, 1.6), 2.0), Velocity((-1.3, 0.9), -3.4), Mass(0.1), ball, name="ball")
+    world.spawn(Transform((2.5, 1.0), 2.8), Velocity((-0.1, -1.1), 0.9), bar, name="bar")
+    world.spawn(Transform((5.1, 1.5), 1.2), Velocity((-2.2, -1.8), -7.9), Mass(1.5), weight, name="weight")
+    joint = Pin("ball", "weight", (-0.9, -1.8), (-0.6, 1.9), motor_speed=4.6, breaks=4.2)
+    world.spawn(joint)
+    water = Shape.box(20.0, 2.0), Medium(density=1.35, quadratic=1.37)
+    world.spawn(Transform((0.0, -1.0)), *water)
+    for _ in range(60):
+        world.step()
+    assert len(world.joints) == 0
+    assert world.time == pytest.approx(1.0, abs=1e-12)

@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from physicslab.components import Held, Mass, Spring, Transform, Velocity
+from physicslab.diagnostics.energy import measure_account
 from physicslab.ecs.config import PhysicsConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.ode.closed_form import NoClosedForm, closed_form
@@ -120,3 +121,14 @@ def test_what_is_held_moves_as_it_is_led_and_what_turns_keeps_turning() -> None:
     assert world.component(held, Transform).position == Vector2(4, 0)
     assert world.component(held, Transform).angle == pytest.approx(6.0)
     assert world.component(spun, Transform).angle == pytest.approx(-4.0)
+
+
+def test_what_moves_at_a_given_speed_works_against_its_spring() -> None:
+    """Nothing else acts: it was taken for an error of the closed form."""
+    world = World(*standard_systems())
+    moves = world.spawn(Transform((0, 0)), Velocity((0.0, -2.0)))
+    world.spawn(Spring(a=moves, anchor_b=(0.0, 3.0), rest_length=1.0, stiffness=10.0))
+    world.run(seconds=0.5)
+    account = measure_account(world).energy
+    assert account["hand"] == pytest.approx(5.0 * (3.0**2 - 2.0**2), rel=1e-12)
+    assert account["numerical"] == pytest.approx(0.0, abs=1e-12)

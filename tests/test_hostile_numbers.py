@@ -14,6 +14,7 @@ from test_fuzz_scenes import run_or_refuse
 from physicslab.cli import main
 from physicslab.components import Mass, Spring, Transform, Velocity
 from physicslab.ecs.component import COMPONENTS, InvalidValue
+from physicslab.ensembles import ensemble
 from physicslab.files.scene import SceneError, read_scene, scene_bytes
 from physicslab.state.masses import Diverged
 from physicslab.systems.spring import SpringSystem
@@ -280,3 +281,19 @@ def test_what_only_a_world_can_refuse_is_one_line_too(
         assert main([command, "drop"]) == 2
         said = capsys.readouterr().err
         assert "box: Mass.inertia = inf: must be a finite number" in said and said.count("\n") == 1
+
+
+def test_the_deviation_of_huge_numbers_is_a_number() -> None:
+    """Their squares are not."""
+    rows = {"ball.Transform.position.y": [0.0, 1e300]}
+    result = ensemble(scene(BALL), rows, measure={"y": "ball.y"}, steps=1, executor="serial")
+    assert result.spread()["y"]["deviation"] == pytest.approx(1e300 / 2**0.5)
+
+
+def test_where_nothing_is_trust_says_so_and_no_more(tmp_path: Path, capsys: Any) -> None:
+    path = tmp_path / "empty.json"
+    path.write_text(json.dumps(scene()))
+    assert main(["run", str(path), "--steps", "2", "--trust", "--json", "-"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["islands_reason"] == "at most one body moves"
+    assert found["stepper"]["reason"] == "nothing moves the bodies"

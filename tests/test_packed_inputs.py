@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
 import pytest
 from desk import bits
 
@@ -14,6 +15,7 @@ from physicslab.components import Drag, Mass, Shape, Spring, Transform, Velocity
 from physicslab.ecs.config import PhysicsConfig
 from physicslab.files.json_text import json_text
 from physicslab.files.scene import read_scene, write_scene
+from physicslab.state.packed import way_and_size
 from physicslab.systems.gravity import GravitySystem
 from physicslab.systems.spring import SpringSystem
 from physicslab.systems.standard import standard_systems
@@ -121,3 +123,8 @@ def test_what_is_unchanged_is_not_packed_again(
     world.physics = replace(world.physics, linear_damping=0.2)
     world.step()
     assert len(calls) == 1
+
+
+def test_an_angle_of_rounding_that_turns_is_no_move() -> None:
+    assert way_and_size(np.array((3.0, 1.0, 8e-16)), np.array((3.0, 1.0, -1e-16))) == (0.0, 0.0)
+    assert way_and_size(np.array((3.0, 1.0, 8e-16)), np.array((3.0, 1.5, -1e-16))) == (0.5, 1.0)

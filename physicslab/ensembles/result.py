@@ -128,7 +128,8 @@ def _spread(column: Values) -> dict[str, float]:
         names = ("mean", "deviation", "least", "low", "median", "high", "greatest")
         return {"count": 0, **dict.fromkeys(names, math.nan)}
     low, median, high = np.quantile(there, (0.05, 0.5, 0.95)).tolist()
-    deviation = float(there.std(ddof=1)) if len(there) > 1 else math.nan
+    scale = float(np.abs(there).max()) or 1.0  # squares of large numbers are not finite
+    deviation = scale * float((there / scale).std(ddof=1)) if len(there) > 1 else math.nan
     return {
         "count": len(there), "mean": float(there.mean()), "deviation": deviation, "least": float(there.min()),
         "low": low, "median": median, "high": high, "greatest": float(there.max()),

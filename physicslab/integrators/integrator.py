@@ -52,7 +52,7 @@ class Splitting:
         q_low, v_low = ode.remainders(state)
         return split(
             ode.q, ode.v, q_low, v_low, ode.inverse_mass, ode.damping, ode.calls, *self.shares, ode.places,
-            ode.gyration, ode.slots.get(FIELDS, -1), h, steps,
+            ode.gyration, ode.slots.get(FIELDS, -1), ode.by_velocity, h, steps,
         )  # fmt: skip
 
 

@@ -165,10 +165,12 @@ def _hang(state: State, form: ClosedForm) -> None:
     for spring, end_a, end_b in zip(springs.tolist(), a.tolist(), b.tolist(), strict=True):
         label = state.label(int(state.entity_index.entities[spring]))
         moving = [end for end in (end_a, end_b) if velocity[end]]
-        if not any(bodies.inverse_mass[end] > 0.0 for end in moving):
+        if not moving:
             continue
         if len(moving) > 1:
             raise NoClosedForm(sentence("joins_two", body=label))
+        if bodies.inverse_mass[moving[0]] == 0.0:
+            raise NoClosedForm(sentence("driven_on_spring", body=label))
         side, body, other = ("a", end_a, end_b) if velocity[end_a] else ("b", end_b, end_a)
         if state.table(Spring)[f"anchor_{side}"][spring].any():
             raise NoClosedForm(sentence("turned_by_spring", body=label))

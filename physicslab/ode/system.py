@@ -64,6 +64,8 @@ class OdeSystem:
     gyration : float64 array (bodies,)
         Where a splitting method advances it and fields turn velocities, the rate of each body [rad/s],
         clockwise; else empty.
+    by_velocity : bool
+        Whether any force depends on velocities.
     damped_calls : int64 array (n, 3)
         ``calls``, and what books the damping, for methods that do not book it themselves.
     slots : dict of int to int
@@ -71,8 +73,7 @@ class OdeSystem:
     places : int64 array
         Places of the budget for kernels (:mod:`physicslab.kernels.forces.budget`).
     near : int64 array and int, optional
-        An order of the coordinates in which those that forces couple are near, and how near; found
-        once by the method that needs it, as it depends on the layout alone.
+        An order of the coordinates in which those that forces couple are near, and how near.
     form : tuple, optional
         A closed form of the motion, behind the ``laws`` for which it holds.
     free_bodies : int
@@ -194,8 +195,7 @@ class OdeSystem:
             self.damping = rates_of * (bodies.inverse_mass[pulled] > 0.0)
         self._calls(state)
         few = len(moving) <= PLAIN_LIMIT and self._carries
-        free = few and not any(force.needs_origin(state) for force in self.forces)
-        self.free_bodies = len(moving) if free else 0
+        self.free_bodies = len(moving) if few and not any(f.needs_origin(state) for f in self.forces) else 0
 
     def gather_state(self, state: State) -> None:
         """Take the state alone, where masses and forces are those of the last :meth:`gather`."""
@@ -367,6 +367,7 @@ class OdeSystem:
         velocity["angular"][self._turning] = v[n:d]
 
     def _calls(self, state: State) -> None:
+        self.by_velocity = any(force.depends_on_velocity(state) for force in self.forces)
         turned = [rates for force in self.forces if (rates := force.gyration(state)) is not None]
         drifts = self._kicked and bool(turned)  # a splitting turns velocities exactly, within its drifts
         self.gyration = np.sum(turned, axis=0)[self.layout.moving] if drifts else np.zeros(0)

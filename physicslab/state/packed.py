@@ -15,6 +15,9 @@ from physicslab.kernels.accounts import FIELDS
 from physicslab.kernels.forces.force_calls import ForceKernel
 from physicslab.state.state import State
 
+_ROUNDING = 1e-14
+"""Share of the largest coordinate that is rounding."""
+
 
 @dataclass(frozen=True, slots=True)
 class PackedForce:
@@ -206,6 +209,10 @@ def turned_anchors(
 
 
 def way_and_size(before: NDArray[np.float64], after: NDArray[np.float64]) -> tuple[float, float]:
-    """Return by how much coordinates (n,) moved at most, and the largest of those that did."""
-    moved = before != after
-    return float(np.abs(after - before).max(initial=0.0)), float(np.abs(before[moved]).max(initial=0.0))
+    """Return by how much coordinates (n,) moved at most, and the largest of those that did.
+
+    A move within the rounding of the largest of all does not count: an angle of 1e-16 turns by itself.
+    """
+    size, way = np.abs(before), np.abs(after - before)
+    moved = way > _ROUNDING * size.max(initial=0.0)
+    return float(way[moved].max(initial=0.0)), float(size[moved].max(initial=0.0))

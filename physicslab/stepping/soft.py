@@ -63,7 +63,7 @@ class Soft(Stepper):
         self.reason = plan.reason
         if not self.hooks:
             self.name, self.title = "fused_contact", "Compiled steps, contacts within them"
-            self.reason = sentence("compiled_contacts")
+            self.reason = plan.reason if plan.collisions == "none" else sentence("compiled_contacts")
         elif self.hooks[0] not in plan.reason:
             self.reason = sentence("both", one=plan.reason, other=self.hooks[0])
 

@@ -39,14 +39,15 @@ def _go_round(
 @allocating_kernel
 def split(
     q: Numbers, v: Numbers, q_low: Numbers, v_low: Numbers, inverse_mass: Numbers, damping: Numbers,
-    calls: Calls, drifts: Numbers, kicks: Numbers, places: Rows, gyration: Numbers, field: int, h: float,
-    steps: int,
+    calls: Calls, drifts: Numbers, kicks: Numbers, places: Rows, gyration: Numbers, field: int,
+    by_velocity: bool, h: float, steps: int,
 ) -> int:  # fmt: skip
     """Advance by ``steps`` steps of ``h`` seconds; return the number of force evaluations.
 
     A step is kick, drift, kick, ..., drift, kick, with the shares ``kicks`` (n + 1,) and ``drifts`` (n,) of
-    h. A kick with no motion since the last one reuses its forces. Damping v' = -c v goes with
-    the kicks and is solved exactly: v(h) = v e^(-c h) + a (1 - e^(-c h)) / c. Sums are compensated:
+    h. A kick with no motion since the last one reuses its forces, unless they go ``by_velocity``, which the
+    last one has changed: steps are the same one by one. Damping v' = -c v goes with the kicks and is solved
+    exactly: v(h) = v e^(-c h) + a (1 - e^(-c h)) / c. Sums are compensated:
     ``q_low`` and ``v_low`` (n,) are the remainders of what moves, and are carried on. The time goes on with
     the drifts, as the coordinates do. Behind it, v takes what causes give
     (:mod:`physicslab.kernels.forces.budget`), with ``places``: in a kick, by the mean velocity.
@@ -62,7 +63,7 @@ def split(
     undamped = np.empty(0)
     known, evaluations = False, 0
     for step in range(steps):
-        moved = 0.0
+        moved, known = 0.0, known and not by_velocity
         for stage in range(len(kicks)):
             kick = kicks[stage] * h
             if kick != 0.0:

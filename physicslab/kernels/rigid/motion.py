@@ -24,7 +24,15 @@ from physicslab.kernels.rigid.impacts import approaches
 from physicslab.kernels.rigid.joined import book_answer
 from physicslab.kernels.rigid.least_norm import solve_equations
 from physicslab.kernels.rigid.passing import longest_segment, share_of_ways
-from physicslab.kernels.rigid.segment_end import ALLOWED, HOLDS, PRESSES, SLIDES, locate_event, note_start
+from physicslab.kernels.rigid.segment_end import (
+    ALLOWED,
+    FASTEST,
+    HOLDS,
+    PRESSES,
+    SLIDES,
+    locate_event,
+    note_start,
+)
 from physicslab.kernels.rigid.smooth_segment import Stages
 
 DONE, STOPPED, NO_FORCES, UNRESOLVED, TOO_MANY = range(5)
@@ -146,7 +154,7 @@ def _any_approaches(
 @always_inlined
 def _make_smooth(
     scene: RigidScene, equations: Equations, count: int, q: Numbers, v: Numbers, h: float, left: float,
-    tolerance: float, stages: Stages, allowed: Numbers,
+    tolerance: float, stages: Stages, start: Vectors,
 ) -> tuple[float, int]:  # fmt: skip
     """Make a segment of ``h`` seconds, or less where its error or its ways demand it.
 
@@ -154,7 +162,9 @@ def _make_smooth(
     """
     for trial in range(_SHORTENINGS):
         error = smooth_segment.make_segment(scene, equations, count, q, v, h, tolerance, stages)
-        share = share_of_ways(scene, v, h, False, stages, allowed) if error <= 1.0 else 1.0
+        share = 1.0
+        if error <= 1.0:
+            share = share_of_ways(scene, v, h, False, stages, start[ALLOWED], start[FASTEST])
         if max(error, share) <= 1.0 or h <= _SHORTEST * left:
             return h, trial + 1
         h *= max(0.1, 0.9 * (math.pow(error, -0.125) if error > 1.0 else 1.0 / share))
@@ -173,17 +183,17 @@ def advance_segment(
     segment took, its beginning included, and whether there was an event.
     """
     soonest = note_start(of, points, count, scratch, q, v, at.acceleration, start)
-    allowed, evaluations, kind, index = start[ALLOWED], 4, -1, -1
-    limit = longest_segment(of, q, v, at.acceleration, allowed)
+    evaluations, kind, index = 4, -1, -1
+    limit = longest_segment(of, q, v, at.acceleration, start[ALLOWED])
     h = min(limit, left, _BEYOND * soonest if foreseen else left)
     short = h < _SHORT * limit
     for _ in range(2):
         if short:
             smooth_segment.make_stages(of, points, count, q, v, h, True, at)
             evaluations += smooth_segment.SHORT_LAST
-            short = share_of_ways(of, v, h, True, at, allowed) <= 1.0
+            short = share_of_ways(of, v, h, True, at, start[ALLOWED], start[FASTEST]) <= 1.0
         if not short:
-            h, segments = _make_smooth(of, points, count, q, v, h, left, tolerance, at, allowed)
+            h, segments = _make_smooth(of, points, count, q, v, h, left, tolerance, at, start)
             evaluations += segments * LAST
         passed, kind, index, more = locate_event(
             of, points, count, scratch, start, at, q, v, h, tolerance, rest, short

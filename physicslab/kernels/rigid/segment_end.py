@@ -3,6 +3,7 @@
 import math
 
 from physicslab.kernels import Numbers, Vectors, always_inlined, inlined
+from physicslab.kernels.ode.dop853_tableau import LAST
 from physicslab.kernels.rigid import features as F
 from physicslab.kernels.rigid.constraints import constrained_acceleration, rates_without_forces
 from physicslab.kernels.rigid.curve import curve_is_exact, fit_curve, place_bodies, place_on_curve
@@ -16,9 +17,9 @@ from physicslab.kernels.rigid.touching import NO_SPEED, SLOW, find_open, moved_c
 PRESSES, HOLDS, SLIDES, REACHES, APART = 0, 1, 2, 3, 4
 """Quantities that must stay positive: a normal force, the rest of the friction cone, a sliding speed, the
 distance to the end of a feature, a gap."""
-_CLEAR, ALLOWED, STARTS = 5, 6, 7
-"""The rows of what is noted at a start that hold how far pairs are apart at least, and how far they may come
-together; the number of rows."""
+_CLEAR, ALLOWED, FASTEST, _CLEAR_AFTER, STARTS = 5, 6, 7, 8, 9
+"""The rows of what is noted at a start that hold how far pairs are apart at least, how far they may come
+together, and how fast at most [m/s]; how far they are apart at least at the end; the number of rows."""
 _CLOSED = 1e-13
 """Share of a size by which a gap may change by rounding."""
 _NO_FORCE = 1e-9
@@ -35,6 +36,10 @@ _LOCATED = 1e-13
 """Share of a segment by which its end may be past the event, and to which that is located on its curve."""
 _BY_SLOPE = 6
 """Trials that follow the slope of the curve; later ones do without it."""
+_LOOKS = 64
+"""Largest number of moments at which a pair is looked at that may meet and part within a segment."""
+_KEPT_Q, _KEPT_V = LAST + 2, LAST + 3
+"""Rows of the pushes that keep a state while others are looked at."""
 _CUTS = 16
 """Largest number of times that an event is found to come after another one."""
 
@@ -153,17 +158,63 @@ def _first_event(
     for kind in range(5):
         for i in range(len(scene.pairs) if kind == APART else count):
             before = start[kind, i]
-            if kind == APART and start[_CLEAR, i] > moved_closer(scene, i, q, stages.q):
-                continue
+            if kind == APART:
+                start[_CLEAR_AFTER, i] = math.inf
+                if start[_CLEAR, i] > moved_closer(scene, i, q, stages.q):
+                    continue
             if (kind == last_kind and i == last) or not _can_end(kind, i, equations):
                 continue
             allowance = _allowance(kind, i, scene, equations, before, rest)
-            after = _value(kind, i, scene, equations, count, scratch, stages.q, stages.v) + allowance
+            if kind == APART:
+                _, after, clear = find_open(scene, equations, count, scratch, i, stages.q, stages.v)
+                start[_CLEAR_AFTER, i] = clear
+            else:
+                after = _value(kind, i, scene, equations, count, scratch, stages.q, stages.v)
+            after += allowance
             if after < (-_NO_FORCE * force if kind <= HOLDS else 0.0):
                 before = max(before + allowance, 0.0)
                 if before / (before - after) < earliest:
                     first_kind, first, earliest = kind, i, before / (before - after)
     return first_kind, first
+
+
+@inlined
+def _first_meeting(
+    scene: RigidScene, equations: Equations, count: int, scratch: Equations, start: Vectors, stages: Stages,
+    q: Numbers, v: Numbers, h: float, end: float, fitted: bool, short: bool,
+) -> tuple[int, float]:  # fmt: skip
+    """Return which pair meets first before the ``end`` of a segment, at which it is apart: -1 if none does.
+
+    And a time at which it overlaps [s]. So do corners that sweep past each other. A pair cannot meet before
+    it has come as far as it is apart, at its highest speed.
+    """
+    index, met, kept_q, kept_v = -1, end, stages.pushes[_KEPT_Q], stages.pushes[_KEPT_V]
+    looked = False
+    for p in range(len(scene.pairs)):
+        clear, after, rate = start[_CLEAR, p], start[_CLEAR_AFTER, p], start[FASTEST, p]
+        is_row, met_before = scene.pairs[p, 2] >= F.FIRST_ROW, clear <= TIE * scene.coefficients[p, 2]
+        if is_row or met_before or not math.isfinite(after) or clear + after >= rate * met:
+            continue
+        if not looked:
+            looked = True
+            for i in range(len(q)):
+                kept_q[i], kept_v[i] = stages.q[i], stages.v[i]
+            if not fitted:
+                fit_curve(stages, v, h, short)
+        t, last = 0.0, min(met, end - max(after, 0.0) / rate)
+        while clear > -math.inf:
+            t += max(clear / rate, end / _LOOKS)
+            if t >= last:
+                break
+            place_bodies(stages, q, v, h, t, scene.rows, scene.pairs[p, 0], scene.pairs[p, 1])
+            _, gap, clear = find_open(scene, equations, count, scratch, p, stages.q, stages.v)
+            if gap < 0.0:
+                index, met = p, t
+                break
+    if looked and index < 0:
+        for i in range(len(q)):
+            stages.q[i], stages.v[i] = kept_q[i], kept_v[i]
+    return index, met
 
 
 @always_inlined
@@ -245,6 +296,12 @@ def locate_event(
         next_kind, next_index = _first_event(
             scene, equations, count, scratch, start, stages, q, rest, kind, index
         )
+        if next_kind < 0:
+            next_index, met = _first_meeting(
+                scene, equations, count, scratch, start, stages, q, v, h, at, cut > 0, short
+            )
+            if next_index >= 0:
+                next_kind, at = APART, met
         if cut == 0 and (short or next_kind >= 0):
             fit_curve(stages, v, h, short)
             exact = curve_is_exact(scene, equations, count, q, v, h, tolerance, stages)

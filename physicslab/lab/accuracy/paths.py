@@ -198,7 +198,8 @@ def sizes_of(world: World, bodies: Sequence[str]) -> NDArray[np.float64]:
     half, radius = lengths_of(world.table(Shape), np.array(rows_of(world, bodies), np.int64))
     sizes = radius + np.hypot(half[:, 0], half[:, 1])
     places = _places(world)
-    whole = float(np.abs(places - places.mean(axis=0)).max(initial=0.0)) or 1.0
+    middle = places.sum(axis=0) / max(len(places), 1)
+    whole = float(np.abs(places - middle).max(initial=0.0)) or 1.0
     return np.where(sizes > 0.0, sizes, whole)
 
 
