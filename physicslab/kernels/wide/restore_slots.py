@@ -109,7 +109,7 @@ def is_of_kind(kind: int, shapes: Shapes, i: int, j: int) -> bool:
 def _is_of_outlines(manifold: Manifold, shapes: Shapes) -> bool:
     """Whether the points of a pair in a slot, which are no bounds', are of the outlines of now.
 
-    Of a disc beside a shape with corners a file keeps no pose: they are found again in any case.
+    A file keeps no pose of a disc beside a shape with corners: their points are found again in any case.
     """
     i, j = manifold.a, manifold.b
     with_disc = (shapes.vertices[i] > 1) != (shapes.vertices[j] > 1)
