@@ -135,7 +135,7 @@ def test_what_moves_at_a_given_speed_works_against_its_spring() -> None:
 
 
 def test_a_run_follows_the_power_of_what_passes_the_end_of_its_spring() -> None:
-    """It moves at a given speed, so no error of its motion tells that: steps of the whole run passed over it."""
+    """It moves at a given speed, so no error of its motion shows it: steps of a whole run passed over it."""
     speed, past, way, damping = 5.0, 0.3, 2.0, 2.0
     world = World(*standard_systems())
     moves = world.spawn(Transform((-way, past)), Velocity((speed, 0.0)))
