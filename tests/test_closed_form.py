@@ -132,3 +132,16 @@ def test_what_moves_at_a_given_speed_works_against_its_spring() -> None:
     account = measure_account(world).energy
     assert account["hand"] == pytest.approx(5.0 * (3.0**2 - 2.0**2), rel=1e-12)
     assert account["numerical"] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_a_run_follows_the_power_of_what_passes_the_end_of_its_spring() -> None:
+    """It moves at a given speed, so no error of its motion shows it: steps of a whole run passed over it."""
+    speed, past, way, damping = 5.0, 0.3, 2.0, 2.0
+    world = World(*standard_systems())
+    moves = world.spawn(Transform((-way, past)), Velocity((speed, 0.0)))
+    world.spawn(Spring(a=moves, anchor_b=(0.0, 0.0), rest_length=1.0, stiffness=30.0, damping=damping))
+    world.run(seconds=2.0 * way / speed)
+    account = measure_account(world).energy
+    taken = damping * speed * 2.0 * (way - past * math.atan(way / past))
+    assert account["damping"] == pytest.approx(-taken, rel=1e-11)
+    assert account["hand"] == pytest.approx(taken, rel=1e-11)

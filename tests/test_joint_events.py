@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 
 from physicslab import World
 from physicslab.components import Mass, Material, Pin, Pulley, Rope, Shape, Slot, Transform, Velocity
-from physicslab.diagnostics.energy import measure_energy
+from physicslab.diagnostics.energy import measure_account, measure_energy
+from physicslab.ecs.config import SimulationConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import load_scene, save_scene
 from physicslab.kernels.accounts import CONTACT, ENERGY, HAND, JOINTS, MOTORS, PX
@@ -438,3 +439,21 @@ def test_the_reason_for_rigid_and_for_soft_names_the_joint() -> None:
         world.spawn(Transform((float(i), 5.0)), Velocity(), Mass(1.0))
     world.synchronise()
     assert (world.plan.contacts, world.plan.contact_reason) == ("soft", "more than 12 bodies move")
+
+
+def test_contacts_hold_what_an_edit_keeps_from_turning_beside_its_motor() -> None:
+    """The motor divided by what it could turn, which was nothing: the weight was an error of the method."""
+    world = World(simulation=SimulationConfig(contacts="rigid", collisions="step"))
+    world.spawn(Transform((0.0, -0.5)), Shape.box(9.0, 1.0))
+    one, other = (
+        world.spawn(Transform((x, 0.5)), Velocity(), Mass(1.0), Shape.box(1.0, 1.0)) for x in (0.0, 1.3)
+    )
+    world.component(other, Mass).fixed_rotation = True
+    world.spawn(Pin(a=one, b=other, anchor_a=(1.3, 0.0), motor_speed=1.0, max_torque=5.0))
+    world.run(seconds=0.5)
+    world.component(one, Mass).fixed_rotation = True
+    world.run(seconds=0.5)
+    assert isinstance(world.stepper, Rigid) and not world.stepper.by_impulses
+    account = measure_account(world)
+    assert account.momentum["contact"].y == pytest.approx(2.0 * 9.81 * world.time, rel=1e-9)
+    assert account.momentum["numerical"].magnitude < 1e-12

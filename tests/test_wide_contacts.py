@@ -297,6 +297,22 @@ def test_other_vertices_of_the_same_extents_count_from_the_next_step() -> None:
         assert arms[near["entity_b"] == wedge].max() == pytest.approx(right, abs=1e-3)
 
 
+@pytest.mark.parametrize("name", ["boxes", "mixed"])
+def test_a_body_made_smaller_is_so_in_a_copy_and_a_file_too(name: str) -> None:
+    """Slots filled from records of the outline before were followed: what it had left went on pressing."""
+    world = settled_boxes() if name == "boxes" else mixed(400)
+    body = world.batch(Mass, Shape).entities.tolist()[50]
+    worlds = [world, world.copy(), world.copy()]
+    for each in worlds:
+        shape = each.component(body, Shape)
+        shape.width, shape.height, shape.radius = 0.8 * shape.width, 0.8 * shape.height, 0.8 * shape.radius
+    worlds[2] = read_scene(write_scene(worlds[2]))
+    for each in worlds:
+        each.run(steps=2)
+    assert bits(worlds[1]) == bits(world)
+    assert bits(worlds[2]) == bits(world)
+
+
 @pytest.mark.parametrize("contacts", ["soft", "rigid"])
 def test_vertices_that_are_new_in_this_process_count_whatever_room_there_is_for_them(contacts: str) -> None:
     world = open_space(contacts=contacts)

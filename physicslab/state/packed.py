@@ -201,6 +201,13 @@ def spring_ends(state: State) -> tuple[NDArray[np.int64], NDArray[np.int64], NDA
     return batch.rows, rows_of(np.where(a == 0, batch.entities, a)), rows_of(spring["b"][batch.rows])
 
 
+def pulls_driven_alone(state: State) -> bool:
+    """Whether a spring pulls at what moves at a given speed, and at nothing that it moves."""
+    _, a, b = spring_ends(state)
+    driven, goes = state.bodies.inverse_mass == 0.0, state.table(Velocity).present
+    return bool((driven[a] & driven[b] & (goes[a] | goes[b])).any())
+
+
 def turned_anchors(
     state: State, end: NDArray[np.int64], springs: NDArray[np.int64], anchors: str
 ) -> NDArray[np.float64]:

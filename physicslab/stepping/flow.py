@@ -17,6 +17,7 @@ from physicslab.ode.steady_turn import steady_turn
 from physicslab.ode.system import OdeSystem
 from physicslab.state.joint_figures import is_overloaded
 from physicslab.state.masses import Diverged, check_finite
+from physicslab.state.packed import pulls_driven_alone
 from physicslab.state.samples import Samples
 from physicslab.state.state import State
 from physicslab.stepping.accounting import put_together
@@ -66,6 +67,8 @@ class Flow(Stepper):
         self._ode = OdeSystem(state, schedule.smooth_forces, kicked=self._method.kicks)
         self._ode.tolerance = tolerance_for(state, schedule.forces)
         self._joined = schedule.find(JointSystem) is not None
+        # No error of a motion at a given speed shows how finely the power of its springs is to be followed.
+        self._driven = pulls_driven_alone(state)
         self.kernels: tuple[Any, ...] = self._method.kernels
         self.reason = plan.reason
 
@@ -81,7 +84,7 @@ class Flow(Stepper):
     @property
     def whole(self) -> bool:
         """Whether a run of any length is one step of the method."""
-        return self._method.chooses_steps and not self._joined
+        return self._method.chooses_steps and not (self._joined or self._driven)
 
     def advance(self, state: State, h: float, steps: int) -> Advance:
         """Make all of the steps in one compiled loop; where joints are put together, in several."""
@@ -90,7 +93,7 @@ class Flow(Stepper):
         begun, start = state.force_evaluations, state.time
         adaptive = self._joined and self._method.chooses_steps
         whole = _FINEST if adaptive else 1  # in a part
-        longest = _PROJECTED * whole if adaptive else 1 if self._joined else parts * steps
+        longest = _PROJECTED * whole if adaptive else 1 if self._joined or self._driven else parts * steps
         if state.joints.breakable and (state.samples is None or state.samples.stride > 1):
             longest = whole  # loads are known at the ends of steps that are sampled
         most = MAX_COSTLY * max(1, math.ceil(h / _COSTLY_S))

@@ -111,8 +111,8 @@ class Rigid(Stepper):
         return None if plan.contacts == "rigid" else plan.contact_reason
 
     def holds(self, state: State) -> bool:
-        """Whether no number was changed that the layout of the forces depends on."""
-        return not self._ode.outdated(state)
+        """Whether no number was changed that the layout of the forces, or which joints act, depends on."""
+        return not self._ode.outdated(state) and self._rows.holds(state)
 
     def ready(self, state: State, h: float) -> bool:
         """Whether the coming step is not one that it has just refused."""

@@ -24,20 +24,27 @@ class RigidRows:
     """
 
     def __init__(self, state: State) -> None:
-        joints, bodies = state.joints, state.bodies
-        joints.refresh(state.entity_index)
-        # A motor without a force, and a row of what nothing moves or turns, do nothing.
-        turns = bodies.inverse_inertia > 0.0
-        moves = (bodies.inverse_mass > 0.0) | turns
-        acting = np.flatnonzero(~joints.solved & (joints.strongest > 0.0)).tolist()
-        given = [turns if joints.measure[row] == Measure.ANGLE else moves for row in acting]
-        rows = [row for row, can in zip(acting, given, strict=True) if can[self._bodies(state, row)].any()]
-        self.rows: NDArray[np.int64] = np.array(rows, np.int64)
+        state.joints.refresh(state.entity_index)
+        self.rows: NDArray[np.int64] = np.array(self._acting(state), np.int64)
         n = len(self.rows)
         self.pairs = np.zeros((n, 3), np.int64)
         self.coefficients = np.zeros((n, packing.NUMBERS))
         for number, row in enumerate(self.rows.tolist()):
             self._pack(state, number, row)
+
+    def holds(self, state: State) -> bool:
+        """Whether these are the rows that act, as far as that depends on what turns."""
+        return self._acting(state) == list(self.rows)
+
+    @classmethod
+    def _acting(cls, state: State) -> list[int]:
+        """Return the rows: a motor without a force, and a row of what nothing moves or turns, do nothing."""
+        joints, bodies = state.joints, state.bodies
+        turns = bodies.inverse_inertia > 0.0
+        moves = (bodies.inverse_mass > 0.0) | turns
+        acting = np.flatnonzero(~joints.solved & (joints.strongest > 0.0)).tolist()
+        given = [turns if joints.measure[row] == Measure.ANGLE else moves for row in acting]
+        return [row for row, can in zip(acting, given, strict=True) if can[cls._bodies(state, row)].any()]
 
     @staticmethod
     def _terms(state: State, row: int) -> list[int]:

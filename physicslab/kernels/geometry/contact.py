@@ -131,6 +131,24 @@ def _vertices_of(shapes: Shapes, i: int, wall: int) -> float:
 
 
 @always_inlined
+def mixed_sizes(manifold: Manifold, shapes: Shapes, turns: bool) -> float:
+    """Return a number that depends on the outlines of a pair, for the field ``base_sizes`` of its record.
+
+    The pair ``turns`` where one is a disc, or where either is no disc and no box.
+    """
+    a, b, half_x, half_y = manifold.a, manifold.b, shapes.half_x, shapes.half_y
+    mixed: float = 2.0 * half_x[b] + 4.0 * half_y[b]
+    if manifold.wall < 0:
+        mixed += 6.0 * half_x[a] + 10.0 * half_y[a]
+    if turns:
+        if not (has_own_way(shapes, a) and has_own_way(shapes, b)):  # of the same extents there are many
+            mixed += 13.0 * _vertices_of(shapes, a, manifold.wall)
+            mixed += 17.0 * _vertices_of(shapes, b, manifold.wall)
+        mixed += 7.0 * shapes.radius[a] + 11.0 * shapes.radius[b]
+    return mixed
+
+
+@always_inlined
 def _swings(shapes: Shapes, a: int, b: int, turn_a: float, turn_b: float) -> float:
     """Return how far corners of both come at most, which turn [rad]."""
     half_x, half_y = shapes.half_x, shapes.half_y
@@ -170,13 +188,11 @@ def _look_up(
     known of them now, and the size [m] of the smaller one. Where nothing is known, their present pose is
     recorded, for which their points are to be found.
     """
-    a, b, half_x, half_y, angle = manifold.a, manifold.b, shapes.half_x, shapes.half_y, motion.angle
-    radius = shapes.radius
+    a, b, half_x, radius, angle = manifold.a, manifold.b, shapes.half_x, shapes.radius, motion.angle
     own_ways = has_own_way(shapes, a) and has_own_way(shapes, b)
-    size, of_both = 2.0 * shapes.thin[b], 2.0 * half_x[b] + 4.0 * half_y[b]
+    size, of_both = 2.0 * shapes.thin[b], mixed_sizes(manifold, shapes, turns)
     if manifold.wall < 0:
         size = min(size, 2.0 * shapes.thin[a])
-        of_both += 6.0 * half_x[a] + 10.0 * half_y[a]
     travel = abs(way.ux) + abs(way.uy)
     swing = _swings(shapes, a, b, h * motion.angular[a], h * motion.angular[b])
     ahead = travel + swing
@@ -184,10 +200,6 @@ def _look_up(
         travel = ahead
         if own_ways:
             size = min(max(half_x[a], radius[a]), max(half_x[b], radius[b]))
-        else:  # of the same extents there are many polygons
-            of_both += 13.0 * _vertices_of(shapes, a, manifold.wall)
-            of_both += 17.0 * _vertices_of(shapes, b, manifold.wall)
-        of_both += 7.0 * radius[a] + 11.0 * radius[b]
     moved_x, moved_y = way.dx - manifold.base_x, way.dy - manifold.base_y
     turn_a, turn_b = angle[a] - manifold.base_angle_a, angle[b] - manifold.base_angle_b
     slow = travel <= 0.5 * pair.CONTACT_MARGIN * size

@@ -114,7 +114,9 @@ def _is_balanced(
     apply(scene, equations, closed, acceleration)
     for i in range(3 * scene.rows):
         way = scene.shapes.reach[i - 2 * scene.rows] if i >= 2 * scene.rows else 1.0
-        if scene.inverse_mass[i] > 0.0 and way * abs(acceleration[i]) > 10.0 * least + share * way * loads[i]:
+        if scene.inverse_mass[i] == 0.0:
+            continue
+        if not way * abs(acceleration[i]) <= 10.0 * least + share * way * loads[i]:  # nor if it is NaN
             return False
     return True
 

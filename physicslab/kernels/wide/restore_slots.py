@@ -7,8 +7,8 @@ import numpy as np
 from physicslab.kernels import Flags, Numbers, Plain, Rows, Vectors, inlined, kernel
 from physicslab.kernels import wide_layout as L
 from physicslab.kernels.arguments import Inverse, Materials
-from physicslab.kernels.geometry.contact import effective_masses
-from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple, named_shapes
+from physicslab.kernels.geometry.contact import effective_masses, mixed_sizes
+from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple, has_own_way, named_shapes
 from physicslab.kernels.records import Manifold, Manifolds, Point, Points
 from physicslab.kernels.wide.slots import clear_slot, store_slot
 
@@ -106,6 +106,19 @@ def is_of_kind(kind: int, shapes: Shapes, i: int, j: int) -> bool:
 
 
 @inlined
+def _is_of_outlines(manifold: Manifold, shapes: Shapes) -> bool:
+    """Whether the points of a pair in a slot, which are no bounds', are of the outlines of now.
+
+    A file keeps no pose of a disc beside a shape with corners: their points are found again in any case.
+    """
+    i, j = manifold.a, manifold.b
+    with_disc = (shapes.vertices[i] > 1) != (shapes.vertices[j] > 1)
+    turns = with_disc or not (has_own_way(shapes, i) and has_own_way(shapes, j))
+    blank = manifold.found != 2 and manifold.base_sizes == 0.0
+    return bool(blank or manifold.base_sizes == mixed_sizes(manifold, shapes, turns))
+
+
+@inlined
 def _may_hold(slots: L.Slots, slot: int, manifold: Manifold, shapes: Shapes, inverse_mass: Numbers) -> bool:
     """Whether a pair can be in the slot that its record names."""
     i, j = manifold.a, manifold.b
@@ -115,6 +128,7 @@ def _may_hold(slots: L.Slots, slot: int, manifold: Manifold, shapes: Shapes, inv
     )
     fits = slots.pair[slot] < 0 and taken & bit == np.uint64(0) and manifold.wall < 0
     fits = fits and is_of_kind(slots.kind, shapes, i, j) and manifold.count > 0
+    fits = fits and (slots.kind == L.DISC or _is_of_outlines(manifold, shapes))
     return bool(fits and inverse_mass[i] + inverse_mass[j] != 0.0)
 
 
