@@ -193,7 +193,7 @@ def _first_meeting(
     for p in range(len(scene.pairs)):
         clear, after, rate = start[_CLEAR, p], start[_CLEAR_AFTER, p], start[FASTEST, p]
         is_row, met_before = scene.pairs[p, 2] >= F.FIRST_ROW, clear <= TIE * scene.coefficients[p, 2]
-        if is_row or met_before or not math.isfinite(after) or clear + after >= rate * met:
+        if is_row or met_before or not math.isfinite(after) or not clear + after < rate * met:
             continue
         if not looked:
             looked = True
@@ -204,7 +204,7 @@ def _first_meeting(
         t, last = 0.0, min(met, end - max(after, 0.0) / rate)
         while clear > -math.inf:
             t += max(clear / rate, end / _LOOKS)
-            if t >= last:
+            if not t < last:  # nor where a push was not finite
                 break
             place_bodies(stages, q, v, h, t, scene.rows, scene.pairs[p, 0], scene.pairs[p, 1])
             _, gap, clear = find_open(scene, equations, count, scratch, p, stages.q, stages.v)
