@@ -42,8 +42,6 @@ from physicslab.systems.resolve import ResolveSystem
 from physicslab.systems.schedule import Schedule
 from physicslab.systems.system import Stage
 
-_IMPACT_FIELDS = ("approach_speed", "impact_normal", "impact_tangent")
-
 
 class Rigid(Stepper):
     """Advances bodies as a constrained system, from event to event.
