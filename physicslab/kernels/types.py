@@ -21,6 +21,8 @@ type Plain[Record] = tuple[Any, ...]
 
 Python passes arguments that belong together so, which numba unpacks three times as fast: ``Record(*plain)``.
 """
+unsigned: Any = np.uint64
+"""Makes an index of which no loop tests whether it counts from the end: that takes as long as some work."""
 
 _make_tuple: Any = numba.types.Tuple
 _make_named: Any = numba.types.BaseTuple.from_types

@@ -7,7 +7,7 @@ as much as it has links, and a load of 10,000 times its mass is carried as by on
 active, as limits that are not reached, are passed over.
 """
 
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 from numba import int64
@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from physicslab.kernels import Numbers, Rows, Vectors, always_inlined, inlined
 from physicslab.kernels.arguments import Inverse
+from physicslab.kernels.types import unsigned
 
 Tables = Annotated[NDArray[np.int64], int64[:, ::1]]
 """An int64 array (n, k), contiguous."""
@@ -47,8 +48,6 @@ _CARRIED = 2.0
 cloth. With 4 a wheel of 80 spokes, solved one by one, gains energy."""
 _L = 4
 """Where the numbers of L begin in those of an entry, behind those that are summed up."""
-unsigned: Any = np.uint64
-"""Makes an index of which no loop tests whether it counts from the end."""
 
 
 class Joints(NamedTuple):

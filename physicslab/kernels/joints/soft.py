@@ -21,9 +21,9 @@ from physicslab.kernels.joints.blocks import (
     factorise,
     substitute_back,
     substitute_forward,
-    unsigned,
 )
 from physicslab.kernels.joints.terms import HOLD, LIMIT, MOTOR, TermEnd, measure_turned
+from physicslab.kernels.types import unsigned
 
 _FASTEST, _DAMPING, _OF_SUBSTEPS = 60.0, 2.0, 0.25
 """The frequency [Hz] of the correction and its damping ratio; at most that share of the rate of substeps."""

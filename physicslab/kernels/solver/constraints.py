@@ -4,9 +4,7 @@ A sweep then reads what it needs in the order of its contacts, and each of its o
 others as can be: how an impulse at one point changes the velocity at the other is a factor, known before.
 """
 
-from typing import Any, NamedTuple
-
-import numpy as np
+from typing import NamedTuple
 
 from physicslab.kernels import always_inlined
 from physicslab.kernels.arguments import Contacts, Inverse, Motion
@@ -25,9 +23,6 @@ from physicslab.kernels.constraint.pair import (
 )
 from physicslab.kernels.records import Constraint, ConstraintPoint, ConstraintPoints, ConstraintRecords
 from physicslab.kernels.wide.solve import SoftConstraint, spring_of
-
-unsigned: Any = np.uint64
-"""Makes an index of which no loop tests whether it counts from the end: that takes as long as the work."""
 
 
 class Constraints(NamedTuple):

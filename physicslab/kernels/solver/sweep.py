@@ -14,7 +14,8 @@ from physicslab.kernels.constraint.pair import (
 from physicslab.kernels.constraint.stirred import SETTLED, Stirred, is_stirred, stir
 from physicslab.kernels.float64x8 import greater
 from physicslab.kernels.records import Constraint, ConstraintPoint
-from physicslab.kernels.solver.constraints import Constraints, mass_of, speeds_at, unsigned
+from physicslab.kernels.solver.constraints import Constraints, mass_of, speeds_at
+from physicslab.kernels.types import unsigned
 from physicslab.kernels.wide.solve import (
     ContactSpring,
     SoftConstraint,

@@ -33,8 +33,9 @@ from physicslab.kernels.joints import blocks as B
 from physicslab.kernels.joints.blocks import Tables
 from physicslab.kernels.motion import damped
 from physicslab.kernels.near_counts import DISC_BLOCKS, WIDE_COUNT
-from physicslab.kernels.solver.constraints import Constraints, moments_about, speeds_at, unsigned
+from physicslab.kernels.solver.constraints import Constraints, moments_about, speeds_at
 from physicslab.kernels.solver.impact_log import Pose, book_outside
+from physicslab.kernels.types import unsigned
 from physicslab.kernels.wide.solve import slot_frame
 
 
