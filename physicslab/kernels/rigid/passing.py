@@ -45,6 +45,27 @@ def _relative(scene: RigidScene, a: int, b: int, rates: Numbers) -> float:
 
 
 @inlined
+def time_apart(
+    scene: RigidScene, a: int, b: int, q: Numbers, v: Numbers, nx: float, ny: float, way: float,
+    stages: Stages, last: int,
+) -> float:  # fmt: skip
+    """Return for how long two bodies stay apart that have a ``way`` between them along (nx, ny) [s].
+
+    They come together by their speeds along that and by turning. These change by the forces at both ends of a
+    segment, and as the direction turns.
+    """
+    rows, reach_a, reach_b = scene.rows, _turning_reach(scene, a), _turning_reach(scene, b)
+    x, y = v[2 * b] - v[2 * a], v[2 * b + 1] - v[2 * a + 1]
+    arm = length_of(q[2 * b] - q[2 * a], q[2 * b + 1] - q[2 * a + 1]) + reach_a + reach_b
+    spin = abs(v[2 * rows + a]) if reach_a > 0.0 else 0.0
+    spin += abs(v[2 * rows + b]) if reach_b > 0.0 else 0.0
+    forced = max(_relative(scene, a, b, stages.pushes[0]), _relative(scene, a, b, stages.pushes[last]))
+    bent = forced + spin * (2.0 * length_of(x, y) + spin * arm)
+    time: float = time_to_pass(way, abs(nx * x + ny * y) + spin * arm, bent)
+    return time
+
+
+@inlined
 def _contacts(scene: RigidScene) -> int:
     """Return how many pairs are bodies that may touch: rows of joints come behind them."""
     n = len(scene.pairs)

@@ -11,7 +11,8 @@ from physicslab.kernels.rigid.detect import TIE
 from physicslab.kernels.rigid.equations import SLIDES_ON, STICKS, UNKNOWN, Equations
 from physicslab.kernels.rigid.features import RigidScene
 from physicslab.kernels.rigid.joint_points import measure
-from physicslab.kernels.rigid.smooth_segment import Stages, make_segment
+from physicslab.kernels.rigid.passing import time_apart
+from physicslab.kernels.rigid.smooth_segment import SHORT_LAST, Stages, make_segment
 from physicslab.kernels.rigid.touching import NO_SPEED, SLOW, find_open, moved_closer
 
 PRESSES, HOLDS, SLIDES, REACHES, APART = 0, 1, 2, 3, 4
@@ -186,10 +187,10 @@ def _first_meeting(
     """Return which pair meets first before the ``end`` of a segment, at which it is apart: -1 if none does.
 
     And a time at which it overlaps [s]. So do corners that sweep past each other. A pair cannot meet before
-    it has come as far as it is apart, at its highest speed.
+    it has come as far as it is apart: at its highest speed, or along the way between its points.
     """
     index, met, kept_q, kept_v = -1, end, stages.pushes[_KEPT_Q], stages.pushes[_KEPT_V]
-    looked = False
+    looked, last_stage = False, SHORT_LAST if short else LAST
     for p in range(len(scene.pairs)):
         clear, after, rate = start[_CLEAR, p], start[_CLEAR_AFTER, p], start[FASTEST, p]
         is_row, met_before = scene.pairs[p, 2] >= F.FIRST_ROW, clear <= TIE * scene.coefficients[p, 2]
@@ -201,16 +202,20 @@ def _first_meeting(
                 kept_q[i], kept_v[i] = stages.q[i], stages.v[i]
             if not fitted:
                 fit_curve(stages, v, h, short)
-        t, last = 0.0, min(met, end - max(after, 0.0) / rate)
-        while clear > -math.inf:
-            t += max(clear / rate, end / _LOOKS)
-            if not t < last:  # nor where a push was not finite
+        t, last, a, b = 0.0, min(met, end - max(after, 0.0) / rate), scene.pairs[p, 0], scene.pairs[p, 1]
+        while t < last:  # which it is not where a push was not finite
+            place_bodies(stages, q, v, h, t, scene.rows, a, b)
+            n, gap, clear = find_open(scene, equations, count, scratch, p, stages.q, stages.v)
+            if gap < 0.0 or clear == -math.inf:
+                index, met = (p, t) if gap < 0.0 else (index, met)
                 break
-            place_bodies(stages, q, v, h, t, scene.rows, scene.pairs[p, 0], scene.pairs[p, 1])
-            _, gap, clear = find_open(scene, equations, count, scratch, p, stages.q, stages.v)
-            if gap < 0.0:
-                index, met = p, t
-                break
+            apart = max(clear / rate, end / _LOOKS)
+            if n > 0:
+                nx, ny = scratch.measures[0, F.NX], scratch.measures[0, F.NY]
+                apart = max(
+                    apart, time_apart(scene, a, b, stages.q, stages.v, nx, ny, clear, stages, last_stage)
+                )
+            t += apart
     if looked and index < 0:
         for i in range(len(q)):
             stages.q[i], stages.v[i] = kept_q[i], kept_v[i]
