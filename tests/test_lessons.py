@@ -260,6 +260,24 @@ def test_figures_hold_where_impacts_follow_within_a_step(seed: int) -> None:
     assert value("mean(b4.speed^2)") == pytest.approx(value("mean(b4.vx^2)") + value("mean(b4.vy^2)"))
 
 
+def test_of_very_many_impacts_in_a_step_evenly_chosen_ones_are_noted() -> None:
+    """Half a million a step, of a body that is squeezed, took 4 s a step to note each by itself."""
+    laws = PhysicsConfig(gravity_mode="none", bounds=(0.0, 0.0, 1.0, 1.0), bounds_restitution=1.0)
+    world = World(physics=laws)
+    circle(world, (0.5, 0.5), radius=0.1, velocity=(2e5, 0.0), restitution=1.0, friction=0.0, name="b")
+    circle(world, (0.5, 0.8), radius=0.1, velocity=(0.0, 2.0), restitution=1.0, friction=0.0, name="other")
+    world.contacts.read = True
+    record = Record(world, ("b.vx", "other.vy"))
+    record.add()
+    world.step()
+    record.add()
+    assert world.collisions > 4000
+    times = record.breaks["b.vx"]
+    assert 500 < len(times) <= 1000 and np.diff(times).max() < 1.5 * world.time / len(times)
+    assert all({abs(v) for v in sides} == {2e5} for sides in record.sides["b.vx"].values())
+    assert record.breaks["other.vy"] == []
+
+
 def test_figures_reach_up_to_the_end_of_a_run() -> None:
     figures = recorded([t * t for t in range(9)])
     figures.record.end = 5.5

@@ -30,6 +30,9 @@ _BOTH_SIDES = {
 """Fields of IMPACT that have a quantity of a body just before an impact and just after it."""
 _OF_MOTION = ("speed", "momentum", "angular momentum", "kinetic", "potential", "energy of", "total energy")
 """The beginnings of other quantities that the motion of bodies tells."""
+_MOST = 1_000
+"""Impacts of a block of the log beyond which evenly chosen ones are noted: where a body is squeezed to a
+standstill, half a million come in a step."""
 _MANY = 500
 """Impacts of a step times bodies beyond which the world is not read at each, which takes as long as many
 steps do: of what so many change little by little there is a straight line through the step."""
@@ -150,9 +153,13 @@ class Record:
 
     def _note_impacts(self) -> None:
         """Note when impacts were since the last time, and the motion before and after each."""
+        own = [body for _, body in self._sources if body is not None]
         for records in self._impacts.read():
             joints, entities = self._world.joints.joints, self._world.entity_index.entities
             held = {int(entities[row]) for joint in joints for row in (joint.a, joint.b)}
+            if len(own) == len(self._sources) and held.isdisjoint(own):
+                records = records[np.isin(records["entity_a"], own) | np.isin(records["entity_b"], own)]
+            records = records[:: max(1, -(-len(records) // _MOST))]
             for record in records:
                 time, pair = float(record["time"]), [int(record[name]) for name in ("entity_a", "entity_b")]
                 for (name, breaks), (quantity, body) in zip(self.breaks.items(), self._sources, strict=True):
