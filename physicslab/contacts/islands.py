@@ -140,7 +140,7 @@ def measure_joints(state: State) -> None:
 
 
 def pull_of(state: State) -> Vector2:
-    """Return uniform gravity [m/s^2], zero where there is none."""
+    """Return uniform gravity [m/s^2], or zero."""
     return state.physics.gravity if state.physics.gravity_mode == "linear" else Vector2()
 
 

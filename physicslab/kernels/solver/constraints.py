@@ -71,9 +71,9 @@ def constrain(contacts: Contacts, constraints: Constraints, inverse: Inverse, sc
             arms = moment_arms(frame_of(manifold, found))
             point.normal_arm_a, point.normal_arm_b, point.tangent_arm_a, point.tangent_arm_b = arms
             point.tangent_mass, met = found.tangent_mass, 0.0 if found.ahead != 0 else scale
-            rubbed = met if manifold.friction > 0.0 else 0.0  # an edit may have taken it away
+            tangent_scale = met if manifold.friction > 0.0 else 0.0  # an edit may have taken it away
             point.normal_impulse = met * found.normal_impulse
-            point.tangent_impulse = rubbed * found.tangent_impulse
+            point.tangent_impulse = tangent_scale * found.tangent_impulse
             point.turning = response(
                 0.0, ia, ib, arms.normal_a, arms.normal_b, arms.tangent_a, arms.tangent_b
             )
