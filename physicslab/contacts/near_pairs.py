@@ -32,7 +32,7 @@ def partition(
     if len(contacts.activation_distance) < found:
         contacts.proximity = np.zeros(4 * found, np.uint32)
         contacts.activation_distance = np.zeros(2 * found)
-    count, contacts.proximity_count = near_pairs.partition(
+    count, contacts.proximity_count = direct_entry(near_pairs.partition)(
         couples, found, pairs, walls, shapes_of(state), fat, state.bodies.inverse_mass,
         state.entity_index.entities, contacts.manifolds, contacts.recorded, contacts.stale, contacts.table,
         contacts.proximity, contacts.activation_distance,

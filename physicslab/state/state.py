@@ -146,6 +146,11 @@ class State(Contents):
         """Whether a step has led to the present state, and so to forces of joints and contacts."""
         return self._forces_at == (self.steps, self.motion_edits)
 
+    def count_steps(self, steps: int, divisions: int) -> None:
+        """Count steps that were made, each divided into so many parts; forces are then those of its end."""
+        self.steps += steps
+        self._forces_at, self.step_divisions = (self.steps, self.motion_edits), divisions
+
     def compile(self, kernels: Iterable[Any]) -> None:
         """Compile kernels that are about to be called, or load them."""
         compile_kernels(kernels)

@@ -195,7 +195,7 @@ class Substeps:
     def _needed_factor(self, state: State, span: Span) -> int:
         """Return how many times as many substeps as configured the next step needs."""
         state.compile((needed_factor,))
-        factor: int = needed_factor(
+        factor: int = direct_entry(needed_factor)(
             near_in(state), joints_in(state), motion_of(state), shapes_of(state), inverse_in(state),
             state.bodies.force, self._plan(state, span, 0, 0), self._softness(state),
             state.contacts.impulse_dt,
