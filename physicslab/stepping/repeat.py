@@ -87,12 +87,15 @@ class Repeat:
             return 0
         if not (stepper.ready(state, h) and stepper.goes_on(state)):
             return 0
-        self._began, account.is_open = start, False
+        self._began, account.is_open, state.in_step = start, False, True
         state.generation += 1
-        if not stepper.keeps_balance:
-            open_account(state, schedule.forces, unedited=True)
-        made = stepper.repeat(state, h, steps)
-        if account.is_open:
-            close_account(state, schedule.forces)
+        try:
+            if not stepper.keeps_balance:
+                open_account(state, schedule.forces, unedited=True)
+            made = stepper.repeat(state, h, steps)
+            if account.is_open:
+                close_account(state, schedule.forces)
+        finally:
+            state.in_step = False
         state.count_steps(made.steps, made.divisions)
         return made.steps
