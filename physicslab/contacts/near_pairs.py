@@ -75,6 +75,7 @@ def _relist(state: State, pairs: NDArray[np.int64], count: int, *, noted: bool) 
     contacts.manifolds, contacts.spare_manifolds = contacts.spare_manifolds, contacts.manifolds
     contacts.points, contacts.spare_points = contacts.spare_points, contacts.points
     contacts.recorded, contacts.active, contacts.stale = count, 0, False
+    contacts.replaced += 1
     contacts.counts[FOLLOWED] = 0  # records have other numbers
     if len(contacts.touching) < needed:
         contacts.touching, contacts.scalar, contacts.sleeping = np.zeros((3, needed + needed // 4), np.int64)
@@ -104,6 +105,7 @@ def add_constraints(state: State, h: float) -> None:
             break
         for constraints in wide.kinds:
             constraints.make_room(constraints.count + contacts.active // WIDE + COLOURS)
+        contacts.replaced += 1
     if came == graph_colour.SPARSE:
         contacts.dissolve(len(state.entity_index))
     if wide.filled and not known:
