@@ -446,5 +446,5 @@ class World(Facade):
 def _island_world(systems: Iterable[System], physics: PhysicsConfig, simulation: SimulationConfig) -> World:
     """Return a world for an island of another: it is one itself."""
     world = World(systems=systems, physics=physics, simulation=simulation)
-    world.islands = Islands(world.schedule, None)
+    world.islands, world.is_part = Islands(world.schedule, None), True
     return world
