@@ -17,6 +17,10 @@ from physicslab.kernels.wide.slots import COLOURS
 from physicslab.kernels.wide_layout import WIDE
 from physicslab.state.state import State
 
+_RECORDS = 3
+"""Records a body for which there is room at first, in each of two sets: what is not in use takes no memory, and
+to grow is to touch all of it again, which takes longer than ten steps where a crowd lands."""
+
 
 def partition(
     state: State, couples: NDArray[np.uint32], found: int, pairs: NDArray[np.int64], walls: int,
@@ -66,7 +70,7 @@ def _relist(state: State, pairs: NDArray[np.int64], count: int, *, noted: bool) 
         contacts.wide.reset(len(entities))
     needed = count + contacts.proximity_count
     if len(contacts.spare_manifolds) < needed:
-        room = needed + needed // 4  # a record takes 400 bytes, and there are two sets of them
+        room = max(needed + needed // 4, _RECORDS * len(entities))
         contacts.spare_manifolds, contacts.spare_points = np.zeros(room, MANIFOLD), np.zeros(2 * room, POINT)
     direct_entry(near_pairs.carry_over)(
         pairs, count, entities, contacts.manifolds, contacts.points, contacts.recorded, contacts.table, noted,
@@ -78,7 +82,8 @@ def _relist(state: State, pairs: NDArray[np.int64], count: int, *, noted: bool) 
     contacts.replaced += 1
     contacts.counts[FOLLOWED] = 0  # records have other numbers
     if len(contacts.touching) < needed:
-        contacts.touching, contacts.scalar, contacts.sleeping = np.zeros((3, needed + needed // 4), np.int64)
+        room = len(contacts.manifolds)
+        contacts.touching, contacts.scalar, contacts.sleeping = np.zeros((3, room), np.int64)
     if contacts.restoring:
         fill_again(state)
     elif contacts.wide.filled:
