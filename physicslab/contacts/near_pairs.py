@@ -1,5 +1,6 @@
 """The list of near pairs, with their records carried over, and those of them that are solved in slots."""
 
+import mmap
 from typing import Any
 
 import numpy as np
@@ -17,9 +18,9 @@ from physicslab.kernels.wide.slots import COLOURS
 from physicslab.kernels.wide_layout import WIDE
 from physicslab.state.state import State
 
-_RECORDS = 3
-"""Records a body for which there is room at first, in each of two sets: what is not in use takes no memory, and
-to grow is to touch all of it again, which takes longer than ten steps where a crowd lands."""
+_RECORDS, _BODIES = 5, 10_000
+"""Records a body, of so many bodies at most, for which there is room at first, in each of two sets. Memory
+that is not touched takes none; to grow is to touch all of it again, which takes as long as a step or two."""
 
 
 def partition(
@@ -54,6 +55,11 @@ def list_all(state: State, pairs: NDArray[np.int64], count: int) -> None:
     _relist(state, pairs, count, noted=False)
 
 
+def _zeros(count: int, record: np.dtype[Any]) -> NDArray[Any]:
+    """Return zeros (count,), no page of which is touched before it is used, as numpy's may be."""
+    return np.frombuffer(mmap.mmap(-1, count * record.itemsize), record)
+
+
 def _make_table(state: State) -> None:
     """Make room to look up every record."""
     contacts = state.contacts
@@ -70,8 +76,8 @@ def _relist(state: State, pairs: NDArray[np.int64], count: int, *, noted: bool) 
         contacts.wide.reset(len(entities))
     needed = count + contacts.proximity_count
     if len(contacts.spare_manifolds) < needed:
-        room = max(needed + needed // 4, _RECORDS * len(entities))
-        contacts.spare_manifolds, contacts.spare_points = np.zeros(room, MANIFOLD), np.zeros(2 * room, POINT)
+        room = max(2 * needed, _RECORDS * min(len(entities), _BODIES))
+        contacts.spare_manifolds, contacts.spare_points = _zeros(room, MANIFOLD), _zeros(2 * room, POINT)
     direct_entry(near_pairs.carry_over)(
         pairs, count, entities, contacts.manifolds, contacts.points, contacts.recorded, contacts.table, noted,
         contacts.spare_manifolds, contacts.spare_points,
