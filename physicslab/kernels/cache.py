@@ -266,7 +266,12 @@ class _Locator(UserProvidedCacheLocator):
         return cls(function, path) if keys.is_own(function.__module__) or os.path.exists(path) else None
 
 
-class _Kept(FunctionCache):  # type: ignore[misc]
+_FunctionCache: Any = FunctionCache  # not all of it is typed
+_MAKING: tuple[Any, ...] = dispatcher, ccallback
+"""The modules of numba that make one for each function."""
+
+
+class _Kept(_FunctionCache):  # type: ignore[misc]
     """numba's cache of one kernel: torn files count as absent, and what cannot be kept runs all the same."""
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
@@ -301,15 +306,15 @@ def cached() -> Iterator[None]:
     chosen = getattr(settings, "CACHE_LOCATOR_CLASSES", "")
     CacheImpl._locator_classes = [_Locator, *before]  # read by numba when a function is decorated
     settings.CACHE_LOCATOR_CLASSES = ""
-    dispatcher.FunctionCache = ccallback.FunctionCache = (
-        _Kept  # which numba makes when a function is decorated
-    )
+    for module in _MAKING:
+        module.FunctionCache = _Kept
     try:
         yield
     finally:
         CacheImpl._locator_classes = before
         settings.CACHE_LOCATOR_CLASSES = chosen
-        dispatcher.FunctionCache = ccallback.FunctionCache = FunctionCache
+        for module in _MAKING:
+            module.FunctionCache = FunctionCache
 
 
 def _folder(function: Callable[..., Any]) -> Path:
