@@ -283,6 +283,10 @@ ACCOUNT_WORDS: dict[str, str] = {
     "numerical": "error",
 }
 """The name of each account in plain words."""
+STORED_WORDS = {
+    "coulomb": "charges", "electric_field": "electric field", "medium": "media", "spring": "springs",
+}  # fmt: skip
+"""What stores energy, in plain words, where its name is none."""
 
 
 def flows(booked: Mapping[str, float]) -> list[tuple[str, float]]:
