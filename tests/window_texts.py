@@ -99,7 +99,8 @@ def tables() -> dict[str, list[str]]:
         "tags": ["all", *{tag for one in SCENES.values() for tag in (*one.teaches, *one.tags)}],
         "copies": [shown_name(name) for name in Copying.FIELDS],
         "microscope": [
-            "before", "after", *(f"{body} {word}" for body in "AB" for word in ("before", "after", "moves", "turns"))
+            *("before", "after"),
+            *(f"{body} {word}" for body in "AB" for word in ("before", "after", "moves", "turns")),
         ],
         "impacts": [one for one in HEADS if len(one) > 2],
         "player": player_texts(), "quantities": [*QUANTITIES, *KIND_OF_UNIT.values()],
