@@ -286,7 +286,7 @@ ACCOUNT_WORDS: dict[str, str] = {
 STORED_WORDS = {
     "coulomb": "charges", "electric_field": "electric field", "medium": "media", "spring": "springs",
 }  # fmt: skip
-"""What stores energy, in plain words, where its name is none."""
+"""Plain words for forces that store energy, where their names are code."""
 
 
 def flows(booked: Mapping[str, float]) -> list[tuple[str, float]]:
