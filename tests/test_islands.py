@@ -104,6 +104,18 @@ def test_the_bits_of_an_island_are_those_that_it_has_alone(far: Add) -> None:
     assert beside.islands.members[0].world.stepper_for(0.01).name == alone.stepper.name == "rigid"
 
 
+def test_what_touches_nothing_has_the_bits_of_a_run_of_its_own_beside_a_floor() -> None:
+    alone, beside = World(), World()
+    for world in (alone, beside):
+        floor(world)
+    own, same = pendulum(alone, FAR), pendulum(beside, FAR)
+    crowd(beside)
+    alone.run(steps=90)
+    beside.run(steps=90)
+    assert sizes(beside)
+    assert np.array_equal(motion(alone, own), motion(beside, same))
+
+
 def test_single_steps_have_the_bits_of_a_run() -> None:
     worlds = World(), World()
     bodies = []

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from physicslab.components import Shape
 from physicslab.integrators import Exhausted, StepTooSmall
 from physicslab.integrators.dop853 import MAX_COSTLY
 from physicslab.kernels.clock import time_after
@@ -19,7 +20,6 @@ from physicslab.state.joint_figures import is_overloaded
 from physicslab.state.masses import Diverged, check_finite
 from physicslab.state.packed import pulls_driven_alone
 from physicslab.state.samples import Samples
-from physicslab.state.solid import solid_rows
 from physicslab.state.state import State
 from physicslab.stepping.accounting import put_together
 from physicslab.stepping.breaks import Overloaded
@@ -68,8 +68,8 @@ class Flow(Stepper):
         self._ode.tolerance = tolerance_for(state, schedule.forces)
         self._joined = schedule.find(JointSystem) is not None
         # Last digits depend on where motion is divided: in an island that may meet others, at each step.
-        whole = not (state.is_part and len(solid_rows(state)))
-        self.leaps: bool = whole or (self._joined and self._method.chooses_steps)
+        meets = state.is_part and bool((state.bodies.inverse_mass[state.batch(Shape).rows] > 0.0).any())
+        self.leaps: bool = not meets or (self._joined and self._method.chooses_steps)
         # No error of a motion at a given speed shows how finely the power of its springs is to be followed.
         self._driven = pulls_driven_alone(state)
         self.kernels: tuple[Any, ...] = self._method.kernels
