@@ -177,11 +177,14 @@ class World(Facade):
             if tried or (load > bears and not any(isinstance(part.stepper, Soft) for part in self.parts)):
                 raise Overloaded(made.steps, load)
             self.schedule.run(Stage.FINISH, self, h * made.steps)
-        self.steps += made.steps
-        self._forces_at, self.step_divisions = (self.steps, self.motion_edits), made.divisions
+        self.count_steps(made.steps, made.divisions)
         self._repeat = Repeat.of(self, self.schedule, self.steppers, h, self.stepper, repeat)
         self._follow_islands()
         return made.steps
+
+    def go_on(self, h: float, steps: int) -> int:
+        """Make steps as the last ones were, as an island; return how many (:meth:`Repeat.make`)."""
+        return 0 if self._repeat is None else self._repeat.make(self, self.schedule, h, steps)
 
     def _prepare(self, h: float) -> None:
         """Begin a step; what is written at PREPARE is booked with what was written before."""
@@ -195,7 +198,7 @@ class World(Facade):
         try:
             made = self._make(h, steps, repeat)
         except NoClosedForm:  # a body was given another velocity, or another spring
-            self._choose()
+            self.plan, self.steppers = choose(self, self.schedule)
             made = self._make(h, steps)
         except NotSmooth:
             go_back(self)
@@ -302,7 +305,6 @@ class World(Facade):
 
     # ---- structure -----------------------------------------------------------------------------------------
 
-    @quiet
     def synchronise(self) -> None:
         """Follow the present entities and components, and compute their masses, as each step does first."""
         with self.active():
@@ -314,7 +316,12 @@ class World(Facade):
             return
         if numbers and self._repeat is not None and self._repeat.holds(self, self.islands):
             self.generation += 1
-            return
+        else:
+            self._follow_edits(numbers)
+
+    @quiet
+    def _follow_edits(self, numbers: bool) -> None:
+        """Follow what changed, whatever that was."""
         self._repeat = None
         self.in_step = True  # a batch that is taken meanwhile follows nothing
         self._behind = False
@@ -330,7 +337,7 @@ class World(Facade):
                 if joined and not self.schedule.holds(self):
                     self.plan, self.steppers = remake(self, self.schedule, None)
                 elif joined or not self.steppers.hold(self):
-                    self._choose()
+                    self.plan, self.steppers = choose(self, self.schedule)
                 self.islands.follow(self)
                 self._follow_islands()
                 if not self.islands.members:
@@ -338,7 +345,6 @@ class World(Facade):
         finally:
             self.in_step = False
 
-    @quiet
     def _adapt(self) -> None:
         """Compute masses and choose systems and steppers again, until nothing changes any more."""
         if self.entity_index.motion_edited:
@@ -368,10 +374,6 @@ class World(Facade):
         if self.islands.joined:
             self.islands.joined = False
             self.plan, self.steppers = remake(self, self.schedule, None)
-
-    def _choose(self) -> None:
-        """Choose steppers again for the same systems, and the method."""
-        self.plan, self.steppers = choose(self, self.schedule)
 
     def resume(self, collisions: str, method: str, steps: int) -> None:
         """Go on with what was chosen before this world was saved (:attr:`StepPlan.kept`), where possible."""
@@ -444,5 +446,5 @@ class World(Facade):
 def _island_world(systems: Iterable[System], physics: PhysicsConfig, simulation: SimulationConfig) -> World:
     """Return a world for an island of another: it is one itself."""
     world = World(systems=systems, physics=physics, simulation=simulation)
-    world.islands = Islands(world.schedule, None)
+    world.islands, world.is_part = Islands(world.schedule, None), True
     return world

@@ -145,3 +145,15 @@ def test_a_run_follows_the_power_of_what_passes_the_end_of_its_spring() -> None:
     taken = damping * speed * 2.0 * (way - past * math.atan(way / past))
     assert account["damping"] == pytest.approx(-taken, rel=1e-11)
     assert account["hand"] == pytest.approx(taken, rel=1e-11)
+
+
+def test_what_turns_about_a_fixed_sun_gets_its_momentum_from_gravity() -> None:
+    world = World(*standard_systems(), physics=PhysicsConfig(gravity_mode="planet", G=1.0))
+    world.spawn(Transform((0.5, 0.0)), Mass(40.0))
+    planet = world.spawn(Transform((2.0, 0.0)), Velocity((0.0, 3.0)), Mass(0.7))
+    world.run(seconds=1.3)
+    assert world.plan.integrator.name == "exact"
+    account, (vx, vy) = measure_account(world), world.component(planet, Velocity).linear
+    assert tuple(account.momentum["gravity"]) == pytest.approx((0.7 * vx, 0.7 * (vy - 3.0)), rel=1e-9)
+    assert abs(account.momentum["numerical"].x) < 1e-12
+    assert abs(account.angular_momentum["numerical"]) < 1e-12

@@ -16,6 +16,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from physicslab import SceneError, World, ensemble, load_scene
+from physicslab.cli import main
 from physicslab.components import Mass, Material, Transform
 from physicslab.ensembles import sink
 from physicslab.ensembles.runs import task_of
@@ -330,6 +331,37 @@ def test_strange_files_in_the_folder_of_parts_are_kept(tmp_path: Path) -> None:
     (folder / f".part-000000.npz.{'0a' * 8}.physicslab-tmp").touch()
     ensemble("drop", {M: [1.0]}, measure="ball.y", steps=1, executor="serial", out=tmp_path / "a.npz")
     assert {path.name for path in folder.iterdir()} == {*strange, "mine"}, "ours are gone, theirs are not"
+
+
+def test_a_part_that_a_crash_has_torn_is_made_again(tmp_path: Path) -> None:
+    part = tmp_path / "a.npz.parts" / "part-000000.npz"
+    part.parent.mkdir()
+    part.write_bytes(b"PK\3\4 the rest was not written")
+    made = ensemble("drop", {M: [1.0]}, measure="ball.y", steps=1, executor="serial", out=tmp_path / "a.npz")
+    assert made.found == 0 and not part.parent.exists()
+
+
+def test_a_full_disk_is_said_with_the_name_of_the_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(sink, "replace_file", full)
+    out = str(tmp_path / "a.npz")
+    command = ["sweep", "drop", "--vary", f"{M}=1:2:2", "--measure", "ball.y", "--seconds", ".1"]
+    assert main([*command, "--workers", "1", "--out", out]) == 1
+    line = f"physicslab: drop: out {out}: cannot be written: No space left on device\n"
+    assert capsys.readouterr().err.endswith(line)
+
+
+def test_fields_of_whole_numbers_are_varied(tmp_path: Path) -> None:
+    out = tmp_path / "a.npz"
+    command = ["sweep", "drop", "--measure", "ball.y", "--seconds", ".1", "--workers", "1"]
+    assert main([*command, "--vary", "simulation.substeps=1:4:4", "--out", str(out)]) == 0
+    with np.load(out) as kept:
+        assert kept["simulation.substeps"].tolist() == [1, 2, 3, 4] and not kept["failure"].any()
+    assert main([*command, "--vary", "simulation.substeps=1:4:3"]) == 2
 
 
 def test_parts_of_another_sweep_are_not_taken(tmp_path: Path) -> None:

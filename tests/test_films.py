@@ -284,10 +284,12 @@ def test_an_interrupted_film_leaves_nothing(ending: str, tmp_path: Path) -> None
 
 @pytest.mark.video
 @needs_video
-def test_an_mp4_film_has_the_size_the_length_and_the_colours(tmp_path: Path) -> None:
+def test_an_mp4_film_has_the_size_the_length_and_the_colours(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     path = tmp_path / "drop.mp4"
     command = ["export", "drop", "--mp4", str(path), "--seconds", "1", "--every", "0.1", "--size", "321x201"]
-    assert cli.main(command) == 0
+    assert cli.main(command) == 0 and "11 pictures of 320 x 200 px" in capsys.readouterr().out
     ffmpeg = check_encoder()
     probe = subprocess.run([ffmpeg, "-i", str(path)], capture_output=True, text=True).stderr
     assert "320x200" in probe and "h264" in probe and re.search(r"\b10 fps", probe)

@@ -366,6 +366,39 @@ def test_planted_code_is_not_run(tmp_path: Path) -> None:
     assert ran.exists()
 
 
+# ---- what is torn, and what cannot be kept -----------------------------------------------------------------
+
+USE = """
+from physicslab.kernels import compile_kernels, motion
+from physicslab.kernels.forces import packed_forces
+compile_kernels((motion.clear, packed_forces.uniform_gravity))
+print(sum(motion.clear.stats.cache_hits.values()))
+"""
+
+
+@pytest.mark.parametrize("ending", ["nbi", "nbc"])
+def test_a_file_that_a_crash_has_torn_is_made_again(ending: str, tmp_path: Path) -> None:
+    tmp_path.chmod(0o700)
+    kept = str(tmp_path)
+    assert [run(USE, PHYSICSLAB_KERNELS=kept) for _ in range(2)] == ["0\n", "1\n"]
+    torn = [*tmp_path.glob(f"*/*.{ending}")]
+    assert len(torn) == 2
+    for path in torn:
+        path.write_bytes(path.read_bytes()[:9])
+    assert [run(USE, PHYSICSLAB_KERNELS=kept) for _ in range(2)] == ["0\n", "1\n"]
+
+
+@posix
+def test_what_a_full_disk_does_not_take_runs_all_the_same(tmp_path: Path) -> None:
+    tmp_path.chmod(0o700)
+    limit = (
+        "import resource, signal; resource.setrlimit(resource.RLIMIT_FSIZE, (99, 99));"
+        "signal.signal(signal.SIGXFSZ, signal.SIG_IGN)"
+    )
+    assert run(limit + USE, PHYSICSLAB_KERNELS=str(tmp_path), PYTHONDONTWRITEBYTECODE="1") == "0\n"
+    assert not [*tmp_path.glob("*/*.nbc")]
+
+
 # ---- what is removed ---------------------------------------------------------------------------------------
 
 

@@ -57,19 +57,20 @@ def make_film(option: str, path: str, arguments: Namespace) -> None:
     except ValueError as error:
         raise CommandError(f"{output.label}: {error}") from error
     name = name_of(world, arguments)
-    count, stopped = _run(world, name, output, every, rate, arguments)
+    film, stopped = _run(world, name, output, every, rate, arguments)
     if stopped:
         raise CommandError(f"{shortened(printable(name))}: {stopped}: the film ends there", FAILED)
     size = f"{os.path.getsize(path) / 1000:,.0f} kB"
-    width, height = arguments.size
-    shown = f"{count:,} pictures of {width} x {height} px, {rate:.4g} a second"
+    pictures = "1 picture" if film.count == 1 else f"{film.count:,} pictures"
+    width, height = film.size
+    shown = f"{pictures} of {width} x {height} px, {rate:.4g} a second"
     print(f"{printable(path)}: {seconds:g} s of the scene, {shown}, {size}")
 
 
 def _run(
     world: World, name: str, output: Output, every: float, rate: float, arguments: Namespace
-) -> tuple[int, str]:
-    """Make the film; return how many pictures it has, and where the run was stopped, if it was."""
+) -> tuple[Film, str]:
+    """Make the film; return it, and where the run was stopped, if it was."""
     from physicslab.view.overlay.moving import MovingPicture
 
     try:
@@ -86,7 +87,7 @@ def _run(
     except OSError as error:
         label = shortened(printable(output.path), 200)
         raise CommandError(f"{label}: cannot be written: {reason_of(error)}", FAILED) from error
-    return film.count, run.stopped
+    return film, run.stopped
 
 
 def _extent(name: str, every: float, arguments: Namespace, tiers: Tiers) -> Box:

@@ -23,6 +23,7 @@ from physicslab.ensembles.space import check_whole
 from physicslab.ensembles.task import Task
 from physicslab.ensembles.workers import MOST_WORKERS, Workers
 from physicslab.files.checks import shown
+from physicslab.files.replace import reason_of
 from physicslab.world import World
 
 _MOST_VALUES = 1_000_000
@@ -53,7 +54,7 @@ def execute(arguments: Namespace) -> int:
         with Progress(label, sys.stderr, foresees=True) as progress, _workers(arguments) as workers:
             result = run_task(task, workers, out, progress.show)
     except OSError as error:
-        raise CommandError(f"{label}: {error}", FAILED) from error
+        raise CommandError(f"{label}: {reason_of(error)}", FAILED) from error
     if picture is not None:
         picture.write(result.map())
     _tell(result, label, output)

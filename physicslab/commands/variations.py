@@ -34,7 +34,7 @@ class Variation:
 
     def assignment(self, value: float) -> str:
         """Return the text that sets the field to a value, as ``--set`` takes it."""
-        text = repr(int(value)) if self.place.spec.kind == "whole" else repr(value)
+        text = repr(value)
         if isinstance(self.held, Vector2):
             x, y = self.held
             text = f"[{text}, {y!r}]" if self.place.part == "x" else f"[{x!r}, {text}]"
@@ -109,9 +109,11 @@ def _values(place: Place, span: str, most: int) -> tuple[float, ...]:
     if not number.isdecimal() or not 2 <= int(number) <= most or ends[0] == ends[1]:
         raise SceneError(f"{where}: must be two numbers that differ, and a count from 2 to {most}")
     values: list[float] = np.linspace(*ends, int(number)).tolist()
-    if whole and not all(value.is_integer() for value in values):
+    if not whole:
+        return tuple(values)
+    if not all(value.is_integer() for value in values):
         raise SceneError(f"{where}: must be whole numbers at equal distances")
-    return tuple(values)
+    return tuple(map(int, values))
 
 
 def combinations(varied: Sequence[Variation]) -> Iterator[list[str]]:

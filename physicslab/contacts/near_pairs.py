@@ -1,5 +1,6 @@
 """The list of near pairs, with their records carried over, and those of them that are solved in slots."""
 
+import mmap
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,10 @@ from physicslab.kernels.wide.slots import COLOURS
 from physicslab.kernels.wide_layout import WIDE
 from physicslab.state.state import State
 
+_RECORDS, _BODIES = 5, 10_000
+"""Records a body, of so many bodies at most, for which there is room at first, in each of two sets. Memory
+that is not touched takes none; to grow is to touch all of it again, which takes as long as a step or two."""
+
 
 def partition(
     state: State, couples: NDArray[np.uint32], found: int, pairs: NDArray[np.int64], walls: int,
@@ -32,7 +37,7 @@ def partition(
     if len(contacts.activation_distance) < found:
         contacts.proximity = np.zeros(4 * found, np.uint32)
         contacts.activation_distance = np.zeros(2 * found)
-    count, contacts.proximity_count = near_pairs.partition(
+    count, contacts.proximity_count = direct_entry(near_pairs.partition)(
         couples, found, pairs, walls, shapes_of(state), fat, state.bodies.inverse_mass,
         state.entity_index.entities, contacts.manifolds, contacts.recorded, contacts.stale, contacts.table,
         contacts.proximity, contacts.activation_distance,
@@ -48,6 +53,11 @@ def list_all(state: State, pairs: NDArray[np.int64], count: int) -> None:
     _make_table(state)
     state.contacts.proximity_count = 0
     _relist(state, pairs, count, noted=False)
+
+
+def _zeros(count: int, record: np.dtype[Any]) -> NDArray[Any]:
+    """Return zeros (count,), no page of which is touched before it is used, as numpy's may be."""
+    return np.frombuffer(mmap.mmap(-1, count * record.itemsize), record)
 
 
 def _make_table(state: State) -> None:
@@ -66,8 +76,8 @@ def _relist(state: State, pairs: NDArray[np.int64], count: int, *, noted: bool) 
         contacts.wide.reset(len(entities))
     needed = count + contacts.proximity_count
     if len(contacts.spare_manifolds) < needed:
-        room = needed + needed // 4  # a record takes 400 bytes, and there are two sets of them
-        contacts.spare_manifolds, contacts.spare_points = np.zeros(room, MANIFOLD), np.zeros(2 * room, POINT)
+        room = max(2 * needed, _RECORDS * min(len(entities), _BODIES))
+        contacts.spare_manifolds, contacts.spare_points = _zeros(room, MANIFOLD), _zeros(2 * room, POINT)
     direct_entry(near_pairs.carry_over)(
         pairs, count, entities, contacts.manifolds, contacts.points, contacts.recorded, contacts.table, noted,
         contacts.spare_manifolds, contacts.spare_points,
@@ -75,9 +85,11 @@ def _relist(state: State, pairs: NDArray[np.int64], count: int, *, noted: bool) 
     contacts.manifolds, contacts.spare_manifolds = contacts.spare_manifolds, contacts.manifolds
     contacts.points, contacts.spare_points = contacts.spare_points, contacts.points
     contacts.recorded, contacts.active, contacts.stale = count, 0, False
+    contacts.replaced += 1
     contacts.counts[FOLLOWED] = 0  # records have other numbers
     if len(contacts.touching) < needed:
-        contacts.touching, contacts.scalar, contacts.sleeping = np.zeros((3, needed + needed // 4), np.int64)
+        room = len(contacts.manifolds)
+        contacts.touching, contacts.scalar, contacts.sleeping = np.zeros((3, room), np.int64)
     if contacts.restoring:
         fill_again(state)
     elif contacts.wide.filled:
@@ -104,6 +116,7 @@ def add_constraints(state: State, h: float) -> None:
             break
         for constraints in wide.kinds:
             constraints.make_room(constraints.count + contacts.active // WIDE + COLOURS)
+        contacts.replaced += 1
     if came == graph_colour.SPARSE:
         contacts.dissolve(len(state.entity_index))
     if wide.filled and not known:

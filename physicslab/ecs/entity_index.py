@@ -55,6 +55,7 @@ class EntityIndex:
         self._seen: list[Any] | None = None
         self.revision = self.changes = 0
         self._batches: dict[tuple[type[Any], ...], Batch] = {}
+        self._physical: list[NDArray[Any]] | None = None
 
     def __len__(self) -> int:
         return len(self.entities)
@@ -69,6 +70,7 @@ class EntityIndex:
         if esper.get_component(_Nothing) is self._seen:
             return False
         self._batches.clear()
+        self._physical = None
         living = set(esper.get_entities())
         renumbered = living != self.row_of.keys()
         if renumbered:
@@ -99,6 +101,17 @@ class EntityIndex:
     def blocks(self) -> list[NDArray[np.uint8]]:
         """Return the memory of all components; other blocks take its place when structure changes."""
         return [table.block for table in self.tables.values() if table.handles]
+
+    def physical_columns(self) -> list[NDArray[Any]]:
+        """Return every column that motion may depend on; others take its place when structure changes."""
+        if self._physical is None:
+            self._physical = [
+                column
+                for kind, table in self.tables.items()
+                if table.handles and getattr(kind, "physical", True)
+                for column in table.columns
+            ]
+        return self._physical
 
     def has_followed(self, entity: int) -> bool:
         """Whether the components of an entity of esper's active context are those that it had lately."""

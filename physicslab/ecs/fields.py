@@ -1,5 +1,6 @@
 """The description of one value: its type, unit, range and meaning, by which it is checked."""
 
+import dataclasses
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -26,6 +27,7 @@ LENGTH_LIMIT = 1e150
 """The largest extent, arm or length of a spring [m]: the squares of two can be added."""
 _TINY = 1e-200
 """A least number below this is said to be any above 0; a message to one that is still smaller names it."""
+_FINITE_LIMIT = float(np.finfo(np.float64).max)
 TEXT_LIMIT = 200
 """Characters of a text whose field gives no ``limit`` of its own."""
 POINTS: Interned[tuple[Vector2, ...]] = Interned(())
@@ -92,6 +94,8 @@ class Field:
         The component or section that has the field.
     lines : int
         How many lines a text may have.
+    lowest, highest : float
+        The smallest and the largest finite number in its range.
     """
 
     name: str
@@ -108,6 +112,13 @@ class Field:
     owner: str = ""
     limit: float = math.inf
     lines: int = 1
+    lowest: float = dataclasses.field(init=False, repr=False, compare=False)
+    highest: float = dataclasses.field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        lowest = max(self.minimum, math.nextafter(self.above, math.inf), -_FINITE_LIMIT)
+        object.__setattr__(self, "lowest", lowest)
+        object.__setattr__(self, "highest", min(self.maximum, self.limit, _FINITE_LIMIT))
 
     @property
     def allowed(self) -> str:
@@ -154,16 +165,6 @@ class Field:
         """How many characters a text may have."""
         return int(self.limit) if self.limit < math.inf else TEXT_LIMIT
 
-    @property
-    def lowest(self) -> float:
-        """The smallest finite number in the field's range."""
-        return max(self.minimum, math.nextafter(self.above, math.inf), -_FINITE_LIMIT)
-
-    @property
-    def highest(self) -> float:
-        """The largest finite number in the field's range."""
-        return min(self.maximum, self.limit, _FINITE_LIMIT)
-
     def check(self, value: object) -> Any:
         """Return ``value`` as a column stores it, or raise :class:`InvalidValue`.
 
@@ -199,8 +200,6 @@ Name, kind and owner are filled in by :func:`physicslab.ecs.component.component`
 is required. A ``derived`` field that is given as ``None`` is kept up to date by the world.
 """
 
-_FINITE_LIMIT = float(np.finfo(np.float64).max)
-
 
 def _finite(value: object) -> float | None:
     """Return any finite real number as a float."""
@@ -223,7 +222,7 @@ def _number(field: Field, value: object) -> float | None:
 
 
 def _whole(field: Field, value: object) -> int | None:
-    if isinstance(value, bool) or not isinstance(value, Integral):
+    if type(value) is not int and (isinstance(value, bool) or not isinstance(value, Integral)):
         return None
     number = int(value)
     return number if abs(number) < 2**63 and field.lowest <= number <= field.highest else None

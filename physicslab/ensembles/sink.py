@@ -8,6 +8,7 @@ import io
 import json
 import re
 import time
+import zipfile
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -18,7 +19,7 @@ from numpy.typing import NDArray
 from physicslab.ensembles.result import read_result, write_result
 from physicslab.ensembles.space import Values
 from physicslab.ensembles.task import Block, Task
-from physicslab.files.replace import ENDING, replace_file
+from physicslab.files.replace import ENDING, reason_of, replace_file
 
 PART = 1000
 """Rows of a part."""
@@ -138,8 +139,9 @@ class Sink:
         """
         if self._out is None or self._folder is None or self.is_whole:
             return
-        write_result(self._out, columns, failures)
-        replace_file(self._key_path(self._out), self._file_key(self._out))
+        with self._named():
+            write_result(self._out, columns, failures)
+            replace_file(self._key_path(self._out), self._file_key(self._out))
         _remove_parts(self._folder)
 
     def _holds_all(self) -> bool:
@@ -202,15 +204,24 @@ class Sink:
 
     def _write(self, number: int, part: Part) -> None:
         assert self._folder is not None
-        self._folder.mkdir(exist_ok=True)
         failures = json.dumps(part.failures, sort_keys=True).encode()
         content = io.BytesIO()
         np.savez(
             content, keys=self._keys(number), done=part.done, values=part.values, wall_s=part.wall_s,
             failures=np.frombuffer(failures, np.uint8),
         )  # fmt: skip
-        replace_file(self._path(number), content.getvalue())
+        with self._named():
+            self._folder.mkdir(exist_ok=True)
+            replace_file(self._path(number), content.getvalue())
         part.written = time.monotonic()
+
+    @contextlib.contextmanager
+    def _named(self) -> Iterator[None]:
+        """Let an error of what is written in a ``with`` block name the file that was given."""
+        try:
+            yield
+        except OSError as error:
+            raise OSError(error.errno, f"out {self._out}: cannot be written: {reason_of(error)}") from error
 
 
 def parts_folder(out: Path) -> Path:
@@ -230,7 +241,13 @@ def _remove_parts(folder: Path) -> None:
 def _read(path: Path) -> dict[str, NDArray[Any]] | None:
     """Return the arrays of a part; ``None`` where there is none that can be read."""
     try:
-        with np.load(path, allow_pickle=False) as kept:
+        with open(path, "rb") as file, np.load(file, allow_pickle=False) as kept:
             return {name: kept[name] for name in ("keys", "done", "values", "wall_s", "failures")}
-    except (OSError, ValueError, KeyError, EOFError):
+    except (
+        OSError,
+        ValueError,
+        KeyError,
+        EOFError,
+        zipfile.BadZipFile,
+    ):  # the last where a crash has torn it
         return None

@@ -52,6 +52,11 @@ class Mp4Writer:
     rate : float
         Pictures a second.
 
+    Attributes
+    ----------
+    size : tuple of two ints
+        Width and height of the film [px].
+
     Raises
     ------
     NoEncoder
@@ -61,7 +66,7 @@ class Mp4Writer:
     """
 
     def __init__(self, path: str | os.PathLike[str], size: tuple[int, int], rate: float) -> None:
-        self._width, self._height = (number // 2 * 2 for number in size)
+        self._width, self._height = self.size = size[0] // 2 * 2, size[1] // 2 * 2
         given = ("-f", "rawvideo", "-pix_fmt", "rgb0", "-s", f"{self._width}x{self._height}")
         film = ("-an", "-c:v", "libx264", "-preset", "veryfast", "-crf", "18", "-pix_fmt", "yuv420p")
         command = (
@@ -141,6 +146,8 @@ class Film:
     ----------
     count : int
         How many pictures it has.
+    size : tuple of two ints
+        Their width and height [px], as the file has them.
 
     Raises
     ------
@@ -153,7 +160,7 @@ class Film:
 
     def __init__(self, path: str | os.PathLike[str], size: tuple[int, int], rate: float) -> None:
         self.check(path, rate)
-        self.path, self.count = Path(path), 0
+        self.path, self.count, self.size = Path(path), 0, size
         self._files = ExitStack()
         try:
             fresh = self._files.enter_context(replacing(path))
@@ -163,6 +170,7 @@ class Film:
                 self._writer = GifWriter(file, size, rate)
             else:
                 self._writer = Mp4Writer(fresh, size, rate)
+                self.size = self._writer.size
         except BaseException as error:
             self._files.__exit__(type(error), error, error.__traceback__)
             raise

@@ -40,7 +40,8 @@ def _start(form: TwoBodies, state: State, ode: OdeSystem) -> Motion:
 
 def _flow(state: State, ode: OdeSystem, h: float, steps: int) -> int:
     form = _form(state, ode)
-    for cause, given in form.given(state, steps * h).items():
+    start = form.motion(state)
+    for cause, given in form.given(start, steps * h).items():
         slot = ode.slots.get(cause)
         if slot is not None:
             ode.v[slot : slot + ACCOUNTS] = given
@@ -55,7 +56,6 @@ def _flow(state: State, ode: OdeSystem, h: float, steps: int) -> int:
         for now, low in zip(motion, ode.remainders(state), strict=True):
             low[:n] = now[2:][form.moves].ravel()
     else:
-        start = form.motion(state)
         for k, t in enumerate(after.tolist()):
             position, velocity = form.after(start, t)
             q[k, :n], v[k, :n] = position.ravel(), velocity.ravel()

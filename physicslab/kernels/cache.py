@@ -40,7 +40,8 @@ from pathlib import Path
 from typing import Any
 
 import numba.core.config
-from numba.core.caching import CacheImpl, UserProvidedCacheLocator
+from numba.core import ccallback, dispatcher
+from numba.core.caching import CacheImpl, FunctionCache, UserProvidedCacheLocator
 from platformdirs import user_cache_path
 
 from physicslab.kernels import keys
@@ -265,6 +266,38 @@ class _Locator(UserProvidedCacheLocator):
         return cls(function, path) if keys.is_own(function.__module__) or os.path.exists(path) else None
 
 
+_FunctionCache: Any = FunctionCache  # not all of it is typed
+_MAKING: tuple[Any, ...] = dispatcher, ccallback
+"""The modules of numba that make one for each function."""
+
+
+class _Kept(_FunctionCache):  # type: ignore[misc]
+    """numba's cache of one kernel: torn files count as absent, and what cannot be kept runs all the same."""
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        """Return the kernel; ``None`` where it is not kept, or its files were torn by a crash."""
+        try:
+            return super().load_overload(sig, target_context)
+        except Exception:  # what a torn pickle raises can be anything
+            try:
+                self.flush()
+            except OSError:
+                self.disable()
+            return None
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        """Keep the kernel, if that can be done: it runs in any case."""
+        try:
+            super().save_overload(sig, data)
+        except OSError as error:
+            _tell_not_kept(error.strerror or str(error))
+
+
+@cache
+def _tell_not_kept(reason: str) -> None:
+    _log.warning("compiled kernels cannot be kept in %s: %s", cache_directory(), reason)
+
+
 @contextmanager
 def cached() -> Iterator[None]:
     """Let functions compiled by numba within a ``with`` block keep their code in the cache."""
@@ -273,11 +306,15 @@ def cached() -> Iterator[None]:
     chosen = getattr(settings, "CACHE_LOCATOR_CLASSES", "")
     CacheImpl._locator_classes = [_Locator, *before]  # read by numba when a function is decorated
     settings.CACHE_LOCATOR_CLASSES = ""
+    for module in _MAKING:
+        module.FunctionCache = _Kept
     try:
         yield
     finally:
         CacheImpl._locator_classes = before
         settings.CACHE_LOCATOR_CLASSES = chosen
+        for module in _MAKING:
+            module.FunctionCache = FunctionCache
 
 
 def _folder(function: Callable[..., Any]) -> Path:

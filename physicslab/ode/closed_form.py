@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from physicslab.components import Drag, Mass, Spring, Transform, Velocity
 from physicslab.ecs.sentences import listed, sentence
 from physicslab.ecs.vector import rotated
+from physicslab.kernels import direct_entry
 from physicslab.kernels.accounts import DAMPING, GRAVITY, SPRINGS
 from physicslab.kernels.forces.budget import ACCOUNTS
 from physicslab.kernels.ode.closed_form_account import give_in_closed_form
@@ -43,6 +44,8 @@ class ClosedForm:
         The rows that move.
     direction : float64 array (n, 2)
         The first axis of each, a unit vector; the second is at a right angle to it.
+    mass : float64 array (n,)
+        The mass [kg] of each, 0 where no force moves it.
     rate2, drag, centre, acceleration : float64 arrays (n, 2)
         By axis: 1/s^2, 1/s, m and m/s^2. The centre includes the shift by the acceleration where rate2 is
         not 0.
@@ -52,6 +55,7 @@ class ClosedForm:
 
     rows: NDArray[np.int64]
     direction: NDArray[np.float64]
+    mass: NDArray[np.float64]
     rate2: NDArray[np.float64]
     drag: NDArray[np.float64]
     centre: NDArray[np.float64]
@@ -65,23 +69,20 @@ class ClosedForm:
     def after(self, start: Motion, t: float) -> Motion:
         """Return positions [m] and velocities [m/s] (n, 2) a time t [s] after a start."""
         position, velocity = start[0].copy(), start[1].copy()
-        propagate(
+        direct_entry(propagate)(
             position, velocity, self.direction, self.rate2, self.drag, self.centre, self.acceleration, t
         )
         return position, velocity
 
-    def given(self, state: State, t: float) -> dict[int, NDArray[np.float64]]:
-        """Return what each cause gives within a time t [s].
+    def given(self, start: Motion, t: float) -> dict[int, NDArray[np.float64]]:
+        """Return what each cause gives within a time t [s] from a start.
 
         Energy [J], momentum [N s] and angular momentum about the origin [N m s] (4,) by cause.
         """
-        position, velocity = self.motion(state)
-        mass = np.where(state.bodies.inverse_mass[self.rows] > 0.0, state.table(Mass)["mass"][self.rows], 0.0)
         given = np.zeros((len(_CAUSES), ACCOUNTS))
-        give_in_closed_form(
-            position, velocity, mass, self.direction, self.rate2, self.drag, self.centre, self.acceleration,
-            t, given,
-        )  # fmt: skip
+        direct_entry(give_in_closed_form)(
+            *start, self.mass, self.direction, self.rate2, self.drag, self.centre, self.acceleration, t, given
+        )
         return dict(zip(_CAUSES, given, strict=True))
 
 
@@ -116,8 +117,8 @@ def closed_form(state: State, forces: Sequence[ForceSystem]) -> ClosedForm | Two
     has_drag = dragged.present[rows] & (mass[rows] > 0.0)
     decay = decay + np.where(has_drag, dragged["linear"][rows] * inverse, 0.0)
     form = ClosedForm(
-        rows, np.tile((1.0, 0.0), (n, 1)), np.zeros((n, 2)), np.stack((decay, decay), axis=1),
-        np.zeros((n, 2)), gravity, _words(forces, bool(decay.any())),
+        rows, np.tile((1.0, 0.0), (n, 1)), np.where(free, mass[rows], 0.0), np.zeros((n, 2)),
+        np.stack((decay, decay), axis=1), np.zeros((n, 2)), gravity, _words(forces, bool(decay.any())),
     )  # fmt: skip
     if len(state.batch(Spring)):
         _hang(state, form)

@@ -33,8 +33,8 @@ class TwoBodies:
         The rows that attract each other.
     moves : slice
         Which of them move: n of the two.
-    weight : float64 array (2,)
-        Their masses [kg]; 0 of one that moves about a fixed one.
+    mass, weight : float64 arrays (2,)
+        Their masses [kg]; and how much of these attracts, 0 of one that moves about a fixed one.
     constant : float
         G [m^3/(kg s^2)].
     what : str
@@ -43,6 +43,7 @@ class TwoBodies:
 
     pair: NDArray[np.int64]
     moves: slice
+    mass: NDArray[np.float64]
     weight: NDArray[np.float64]
     constant: float
     what: str
@@ -73,17 +74,17 @@ class TwoBodies:
         (position,), (velocity,) = self.follow((start[0].copy(), start[1].copy()), np.array((t,)))
         return position, velocity
 
-    def given(self, state: State, t: float) -> dict[int, NDArray[np.float64]]:
-        """Return what comes in by a body that is fixed within a time t [s].
+    def given(self, start: Motion, t: float) -> dict[int, NDArray[np.float64]]:
+        """Return what comes in by a body that is fixed within a time t [s] from a start.
 
         Momentum [N s], and angular momentum about the origin [N m s], in an account (4,): the line of the
         force always leads through the fixed body. Gravity stores the energy.
         """
         row = np.zeros(ACCOUNTS)
         if len(self.rows) == 1:
-            start, fixed = self.motion(state), 1 - self.moves.start
+            fixed = 1 - self.moves.start
             gained = self.after(start, t)[1][0] - start[1][1 - fixed]
-            row[[PX, PY]] = gained * state.table(Mass)["mass"][self.pair[1 - fixed]]
+            row[[PX, PY]] = gained * self.mass[1 - fixed]
             row[ANGULAR_MOMENTUM] = start[0][fixed, 0] * row[PY] - start[0][fixed, 1] * row[PX]
         return {GRAVITY: row}
 
@@ -106,14 +107,14 @@ def two_bodies(state: State) -> TwoBodies | None:
     physics, pair, speeds = state.physics, state.batch(Transform, Mass).rows, state.table(Velocity)
     if len(pair) != 2 or physics.softening or physics.linear_damping or physics.G <= 0.0:
         return None
-    moves, weight = speeds.present[pair], state.table(Mass)["mass"][pair]
+    moves, mass = speeds.present[pair], state.table(Mass)["mass"][pair]
     count = int(np.count_nonzero(moves))
     if not count or count != np.count_nonzero(speeds.present):
         return None
     if 0.0 in state.bodies.inverse_mass[pair][moves]:
         return None
     first = int(moves.argmax())
-    if count == 1:
-        weight[first] = 0.0
-    form = TwoBodies(pair, slice(first, first + count), weight, physics.G, sentence("attraction_of_two"))
+    weight = np.where(moves, 0.0, mass) if count == 1 else mass
+    which = slice(first, first + count)
+    form = TwoBodies(pair, which, mass, weight, physics.G, sentence("attraction_of_two"))
     return form if form.holds(form.motion(state)) else None

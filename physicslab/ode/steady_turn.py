@@ -25,13 +25,13 @@ def turn_steadily(state: State, rows: NDArray[np.int64], span: float) -> None:
     """Turn bodies (rows,) through ``span`` seconds; what damping takes of that is booked."""
     transform, velocity, c = state.table(Transform), state.table(Velocity), state.physics.angular_damping
     spin = velocity["angular"][rows]
-    if not spin.any():
+    if not c:
+        transform["angle"][rows] += spin * span
         return
     (transform["angle"][rows],), (velocity["angular"][rows],) = steady_turn(state, rows, np.array([span]))
-    if c:
-        inverse = state.bodies.inverse_inertia[rows]
-        turns = inverse > 0.0
-        momentum = spin[turns] / inverse[turns]
-        given = state.account.sums[DAMPING]
-        given[ENERGY] += 0.5 * float(momentum @ spin[turns]) * np.expm1(-2.0 * c * span)
-        given[ANGULAR_MOMENTUM] += float(momentum.sum()) * np.expm1(-c * span)
+    inverse = state.bodies.inverse_inertia[rows]
+    turns = inverse > 0.0
+    momentum = spin[turns] / inverse[turns]
+    given = state.account.sums[DAMPING]
+    given[ENERGY] += 0.5 * float(momentum @ spin[turns]) * np.expm1(-2.0 * c * span)
+    given[ANGULAR_MOMENTUM] += float(momentum.sum()) * np.expm1(-c * span)

@@ -74,6 +74,8 @@ class Contacts:
     read : bool
         Whether the impacts of the contact step are read from the log, and so written to it (a gas takes 5 %
         longer for that); those located in time are there in any case.
+    replaced : int
+        How often arrays were put in the place of others, which who holds them must then take.
     source : callable, optional
         Brings the pairs here when they are read, where they are found in the worlds of islands.
     """
@@ -111,7 +113,7 @@ class Contacts:
         self.opened = np.zeros(slots.COLOURS, np.int64)
         self._synced, self.restoring = True, False
         self.impulse_dt, self.substep_factor = 0.0, 1
-        self.stale = True
+        self.stale, self.replaced = True, 0
         self.log: NDArray[Any] = np.zeros(self.LOGGED, IMPACT)
         self.read = False
         self.source: Callable[[], None] | None = None
@@ -151,6 +153,7 @@ class Contacts:
 
     def make_room(self, capacity: int) -> None:
         """Drop everything, and make room for so many records."""
+        self.replaced += 1
         self.manifolds: NDArray[Any] = np.zeros(capacity, MANIFOLD)
         self.points: NDArray[Any] = np.zeros(2 * capacity, POINT)
         self.touching: NDArray[np.int64] = np.zeros(capacity, np.int64)
@@ -249,6 +252,7 @@ class Contacts:
     def set_inactive(self, inactive: NDArray[np.bool_], rows: int) -> None:
         """Leave out the pairs of which both bodies are ``inactive`` (rows,), and take in all others."""
         self.inactive = inactive
+        self.replaced += 1
         found = self.manifolds["found"]
         found[found == AS_FOUND] = 0  # the effective masses are others
         if not self.stale:  # else this is done when they are listed

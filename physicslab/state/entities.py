@@ -288,7 +288,9 @@ class Entities:
 
         They follow what was spawned or removed where a :meth:`batch` or a component is taken, or a step made.
         """
-        return self.entity_index.table(component)
+        index = self.entity_index if self._behind else self._index  # a property takes as long as the rest
+        found = index.tables.get(component)
+        return index.table(component) if found is None else found
 
     def batch(self, *components: type[Any]) -> Batch:
         """Return the rows of the entities that have all of ``components``; within a step, at its start."""

@@ -21,7 +21,7 @@ def solid_rows(state: State) -> NDArray[np.int64]:
 
 def is_any_apart(state: State) -> bool:
     """Whether joints or layers keep any two shapes from touching each other."""
-    return bool(len(state.joints.apart)) or bool(len(state.batch(Layer)))
+    return len(state.joints.apart) > 0 or state.entity_index.has_any(Layer)
 
 
 def may_touch(state: State, a: NDArray[Any], b: NDArray[Any]) -> NDArray[np.bool_]:

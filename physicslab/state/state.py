@@ -45,6 +45,8 @@ class State(Contents):
         When a substep begins and ends, relative to the moment at which impacts are resolved, in substeps.
     generation : int
         Grows whenever columns may have been changed from outside, as between steps.
+    is_part : bool
+        Whether it is that of an island of another world.
     kick_before_contacts : float
         Which share of a substep's kick comes before contacts are found.
     moment : float
@@ -89,6 +91,7 @@ class State(Contents):
         "force_evaluations",
         "generation",
         "has_forces",
+        "is_part",
         "joints",
         "kick_before_contacts",
         "moment",
@@ -115,7 +118,7 @@ class State(Contents):
         self.substeps, self.step_divisions = self.simulation.substeps, 1
         self.force_evaluations = self.collisions = self.returned_inside = 0
         self._waited_before = seconds_waited()
-        self.generation = 0
+        self.generation, self.is_part = 0, False
         self.has_forces = self.uniform_forces = self.event_driven = self.rigid_contacts = False
         self.window, self.kick_before_contacts, self.moment = (-0.5, 0.5), 0.5, 0.0
         self.bodies, self.contacts, self.sleep = Bodies(), Contacts(), Sleep()
@@ -145,6 +148,11 @@ class State(Contents):
     def forces_known(self) -> bool:
         """Whether a step has led to the present state, and so to forces of joints and contacts."""
         return self._forces_at == (self.steps, self.motion_edits)
+
+    def count_steps(self, steps: int, divisions: int) -> None:
+        """Count steps that were made, each divided into so many parts; forces are then those of its end."""
+        self.steps += steps
+        self._forces_at, self.step_divisions = (self.steps, self.motion_edits), divisions
 
     def compile(self, kernels: Iterable[Any]) -> None:
         """Compile kernels that are about to be called, or load them."""

@@ -19,6 +19,7 @@ from physicslab.state.joint_figures import is_overloaded
 from physicslab.state.masses import Diverged, check_finite
 from physicslab.state.packed import pulls_driven_alone
 from physicslab.state.samples import Samples
+from physicslab.state.solid import solid_rows
 from physicslab.state.state import State
 from physicslab.stepping.accounting import put_together
 from physicslab.stepping.breaks import Overloaded
@@ -58,7 +59,6 @@ class Flow(Stepper):
 
     name: str = "flow"
     title: str = "Steps as one compiled flow"
-    leaps: bool = True
     divisible: bool = False
     samples: bool = True
 
@@ -67,6 +67,9 @@ class Flow(Stepper):
         self._ode = OdeSystem(state, schedule.smooth_forces, kicked=self._method.kicks)
         self._ode.tolerance = tolerance_for(state, schedule.forces)
         self._joined = schedule.find(JointSystem) is not None
+        # Last digits depend on where motion is divided: in an island that may meet others, at each step.
+        whole = not (state.is_part and len(solid_rows(state)))
+        self.leaps: bool = whole or (self._joined and self._method.chooses_steps)
         # No error of a motion at a given speed shows how finely the power of its springs is to be followed.
         self._driven = pulls_driven_alone(state)
         self.kernels: tuple[Any, ...] = self._method.kernels
@@ -93,7 +96,8 @@ class Flow(Stepper):
         begun, start = state.force_evaluations, state.time
         adaptive = self._joined and self._method.chooses_steps
         whole = _FINEST if adaptive else 1  # in a part
-        longest = _PROJECTED * whole if adaptive else 1 if self._joined or self._driven else parts * steps
+        free = parts * steps if self.leaps else parts
+        longest = _PROJECTED * whole if adaptive else 1 if self._joined or self._driven else free
         if state.joints.breakable and (state.samples is None or state.samples.stride > 1):
             longest = whole  # loads are known at the ends of steps that are sampled
         most = MAX_COSTLY * max(1, math.ceil(h / _COSTLY_S))

@@ -15,7 +15,8 @@ from physicslab.ecs.component import Component
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.context import create_numbered
 from physicslab.ecs.table import Table, as_slice
-from physicslab.kernels import near_counts
+from physicslab.kernels import Plain, near_counts
+from physicslab.kernels.arguments import Motion
 from physicslab.kernels.clock import time_after
 from physicslab.state.remainders import Remainders, coordinate_keys
 from physicslab.state.state import State
@@ -45,6 +46,9 @@ class Part(Stepped, Protocol):
 
     def resume(self, collisions: str, method: str, steps: int) -> None:
         """Go on with what was chosen earlier."""
+
+    def go_on(self, h: float, steps: int) -> int:
+        """Make steps as the last ones were made, if nothing was edited; return how many."""
 
     def book_edits(self) -> None:
         """Book what was changed since the last step."""
@@ -121,23 +125,26 @@ class Island:
         Its bookings and counts are added to those of the whole world, and samples are taken of its bodies and
         of ``driven`` rows.
         """
-        own, done, samples = self.state, 0, state.samples
+        own, samples = self.state, state.samples
         part = None if samples is None else samples.part(own, time, steps * h)
         own.contacts.read = state.contacts.read
         counts, impacts = [getattr(own, name) for name in _COUNTED], own.contacts.counts[_IMPACTS]
         own.time, own.samples, sums = time, part, own.account.sums.copy()
-        with own.active():
-            while done < steps:
-                self.world.synchronise()
-                # Smooth motion depends on where it is divided, and that on what else there is.
-                single = self.touches and self.world.stepper_for(h).leaps
-                try:
-                    made = self.world.advance(h, 1 if single else steps - done)
-                    done, own.time = done + made, time_after(own.time, h, made)
-                except Overloaded as found:
-                    steps = done + found.steps - 1
-                    if not steps:
-                        raise
+        done = self.world.go_on(h, steps) if self.touches else 0
+        if done < steps:
+            with own.active():
+                while done < steps:
+                    own.time = time_after(time, h, done)
+                    self.world.synchronise()
+                    # Smooth motion depends on where it is divided, and that on what else there is.
+                    single = self.touches and self.world.stepper_for(h).leaps
+                    try:
+                        done += self.world.advance(h, 1 if single else steps - done)
+                    except Overloaded as found:
+                        steps = done + found.steps - 1
+                        if not steps:
+                            raise
+        own.time = time_after(time, h, done)
         if samples is not None and part is not None:
             samples.join(part, *self._with(state, driven))
             own.samples = None
@@ -156,10 +163,10 @@ class Island:
         own = np.concatenate((self.own, self.state.entity_index.rows_of(entities)))
         return own, np.concatenate((self.there, driven))
 
-    def write_back(self, state: State, driven: Rows) -> None:
+    def write_back(self, state: State, motion: Plain[Motion], driven: Rows) -> None:
         """Write how its bodies move, and which sleep, to the whole world, and so ``driven`` rows of that."""
         own, there = self._with(state, driven) if len(driven) else self._slices
-        for column, part in zip(motion_of(state), motion_of(self.state), strict=True):
+        for column, part in zip(motion, motion_of(self.state), strict=True):
             column[there] = part[own]
         if self.state.sleep.on:
             own, there = self._slices
@@ -265,17 +272,6 @@ def copy_joints(part: State, state: State) -> None:
             for name in ("impulse", "force", "largest", "dependent"):
                 whole = getattr(state.joints, name)
                 whole[there[joint.entity, joint.kind]] = getattr(part.joints, name)[joint.own]
-
-
-def numbers_of(state: State) -> list[NDArray[Any]]:
-    """Return every column that motion may depend on."""
-    tables = state.entity_index.tables.items()
-    return [
-        column
-        for kind, table in tables
-        if table.handles and getattr(kind, "physical", True)
-        for column in table.columns
-    ]
 
 
 def rows_changed(numbers: Sequence[NDArray[Any]], left: bytes) -> NDArray[np.bool_]:

@@ -8,7 +8,7 @@ of an island are those that it has alone.
 
 import math
 import weakref
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -35,7 +35,6 @@ from physicslab.stepping.island import (
     join_logs,
     kept_of,
     make_island,
-    numbers_of,
     rows_changed,
 )
 from physicslab.stepping.select import Steppers
@@ -91,6 +90,7 @@ class Islands:
         self._comes_apart, self.divisible, self.apart_until, self._left = False, True, -math.inf, b""
         self._examined = self._bodies = 0
         self._entities: Rows | None = None
+        self._driven = _NONE
         self._kernels: tuple[Any, ...] = ()
         self._kernels_of: list[Steppers] = []
 
@@ -169,10 +169,9 @@ class Islands:
         state.substeps = state.simulation.substeps
         smooth = [island for island in self.members if not island.touches]
         smooth.sort(key=lambda island: not island.state.joints.breakable)  # these may make fewer steps
-        driven = self._driven(state)
         try:
             for island in smooth:
-                wanted, steps = steps, island.go(state, start, h, steps, driven.get(island, _NONE))
+                wanted, steps = steps, island.go(state, start, h, steps, self._also(island))
                 if steps < wanted and island is not smooth[0]:
                     raise Overloaded(steps + 1)
             while made < steps and self.members:
@@ -180,15 +179,13 @@ class Islands:
                 count = min(self.steps_ahead(state, h), steps - made) if touching else steps - made
                 logged = [island.state.contacts.logged for island in touching]
                 for island in touching:
-                    island.go(state, state.time, h, count, driven.get(island, _NONE))
+                    island.go(state, state.time, h, count, self._also(island))
                 parts = max(parts, *(island.state.step_divisions for island in self.members))
                 join_logs(state, [island.state for island in touching], logged)
                 made, state.time = made + count, time_after(state.time, h, count)
-                self._write_back(state, driven)
-                if made < steps:
-                    if not self._join_near(state, h):
-                        self._examine(state)
-                    driven = self._driven(state) if self.members else {}
+                self._write_back(state)
+                if made < steps and not self._join_near(state, h):
+                    self._examine(state)
         finally:
             state.time = start
         return Advance(made, parts)
@@ -208,27 +205,27 @@ class Islands:
     def _take_edits(self, state: State) -> None:
         """Let the islands follow what was changed in the whole world since the last step."""
         self._follow_rows(state)
-        now = b"".join(numbers_of(state))
+        now = b"".join(state.entity_index.physical_columns())
         if now == self._left:
             return
-        changed, self._left = rows_changed(numbers_of(state), self._left), now
+        changed, self._left = rows_changed(state.entity_index.physical_columns(), self._left), now
         for island in self.members:
             island.take(state, changed)
         self.apart_until = -math.inf
         self._join_near(state, state.simulation.dt)
 
-    def _driven(self, state: State) -> dict[Island, Rows]:
-        """Return the rows that no force moves, and the island that writes them for all: the first."""
-        moves = state.table(Transform).present & state.table(Velocity).present
-        return {self.members[0]: np.flatnonzero(moves & ~partition.movable_in(state))}
+    def _also(self, island: Island) -> Rows:
+        """Return the rows that no force moves, for the island that writes them for all: the first."""
+        return self._driven if island is self.members[0] else _NONE
 
-    def _write_back(self, state: State, driven: Mapping[Island, Rows]) -> None:
+    def _write_back(self, state: State) -> None:
         """Write the motion of all islands, and of what no force moves, into the whole world."""
+        motion = motion_of(state)
         for island in self.members:
-            island.write_back(state, driven.get(island, _NONE))
+            island.write_back(state, motion, self._also(island))
             copy_joints(island.state, state)
         state.sleep.count = int(np.count_nonzero(state.sleep.asleep))
-        self._left = b"".join(numbers_of(state))
+        self._left = b"".join(state.entity_index.physical_columns())
         own, whole = weakref.ref(self), weakref.ref(state)
 
         def show() -> None:
@@ -245,11 +242,13 @@ class Islands:
             _ = island.world.schedule.timings
 
     def _follow_rows(self, state: State) -> None:
-        """Find the rows of all islands, where those of the whole world are numbered again."""
+        """Find driven rows, and those of all islands where rows of the whole world are numbered again."""
         if self._entities is not state.entity_index.entities:
             self._entities = state.entity_index.entities
             for island in self.members:
                 island.follow_rows(state)
+        moves = state.table(Transform).present & state.table(Velocity).present
+        self._driven = np.flatnonzero(moves & ~partition.movable_in(state))
 
     # ---- which they are ------------------------------------------------------------------------------------
 
@@ -302,7 +301,7 @@ class Islands:
         self._comes_apart = any(island.touches for island in self.members)
         # The last digits of smooth motion depend on where it is divided.
         self.divisible, self.apart_until = all(island.touches for island in self.members), -math.inf
-        self._write_back(state, self._driven(state))
+        self._write_back(state)
 
     def _examine(self, state: State) -> bool:
         """Divide islands that have come apart, where it is time to look; return whether any were."""

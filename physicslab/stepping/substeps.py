@@ -124,6 +124,7 @@ class Substeps:
         self._springs = (np.zeros(0), np.zeros(0, np.int64)) if self.split is None else self.split.flows
         self._entry: Callable[..., Any] = soft.advance
         self._fixed: tuple[tuple[Any, ...], tuple[Any, ...], Any]
+        self._replaced = -1
         self._held: tuple[Any, ...] | None = None  # arguments of the last call, where they hold for the next
         self._packed: tuple[list[NDArray[np.int64]], NDArray[np.int64]] = [], np.zeros((0, 3), np.int64)
         self._steps = self._substeps = self._nanoseconds = 0
@@ -195,7 +196,7 @@ class Substeps:
     def _needed_factor(self, state: State, span: Span) -> int:
         """Return how many times as many substeps as configured the next step needs."""
         state.compile((needed_factor,))
-        factor: int = needed_factor(
+        factor: int = direct_entry(needed_factor)(
             near_in(state), joints_in(state), motion_of(state), shapes_of(state), inverse_in(state),
             state.bodies.force, self._plan(state, span, 0, 0), self._softness(state),
             state.contacts.impulse_dt,
@@ -269,6 +270,8 @@ class Substeps:
     def _arguments(self, state: State, h: float) -> tuple[Any, ...]:
         """Return the arguments of the loop; those that change only with structure or laws are kept."""
         contacts = state.contacts
+        if self._replaced != contacts.replaced:
+            self._held, self._replaced = None, contacts.replaced
         held = self._held = self._held or self._present_arguments(state, h)
         return (*held, contacts.impulse_dt, contacts.step_log, self._cost)
 

@@ -10,6 +10,7 @@ from physicslab.components.shape import CHAIN
 from physicslab.contacts.arguments import motion_of, near_in, shapes_of, speculative_margin
 from physicslab.contacts.near_pairs import partition
 from physicslab.ecs.sentences import sentence
+from physicslab.kernels import direct_entry
 from physicslab.kernels.broad import chains, grid, leaving, near_pairs
 from physicslab.kernels.broad.fat_boxes import HIT_SHARE, fat_boxes, still_holds
 from physicslab.kernels.geometry.shapes import OWN
@@ -199,7 +200,7 @@ class BroadPhaseSystem(System):
             left.indexed = leaving.index_bodies(
                 self.boxes, vertices, left.first, left.body, left.home_x, left.home_y
             )
-        left.number = leaving.add_pairs(
+        left.number = direct_entry(leaving.add_pairs)(
             near_in(state), motion_of(state), shapes_of(state), state.bodies.inverse_mass,
             self.fat, self.boxes, left.moved, left.number, state.physics.bounds is not None, self.bounds,
             left.first, left.body, left.home_x, left.home_y, left.indexed,
@@ -210,7 +211,8 @@ class BroadPhaseSystem(System):
     def _list_all(self, state: State, awake: NDArray[np.float64], ahead: float, margin: float) -> None:
         """List all near pairs again."""
         share = math.inf if _sparse(state) else HIT_SHARE
-        fat_boxes(motion_of(state), shapes_of(state), awake, self.fat, self.boxes, ahead, share, margin)
+        make = direct_entry(fat_boxes)
+        make(motion_of(state), shapes_of(state), awake, self.fat, self.boxes, ahead, share, margin)
         inverse_mass = state.bodies.inverse_mass
         bounded = state.physics.bounds is not None
         vertices = state.bodies.shapes.vertices
@@ -255,7 +257,7 @@ class BroadPhaseSystem(System):
     ) -> tuple[int, int]:
         """Find the pairs, with more room where it is too little; return how many of bodies, of walls."""
         while True:
-            found, walls, self.leavers.crowded = grid.find_pairs(
+            found, walls, self.leavers.crowded = direct_entry(grid.find_pairs)(
                 self.boxes, self.fat, vertices, inverse_mass, bounded, self.bounds, self._pairs, self._couples
             )
             if 2 * found <= len(self._couples) and found + walls <= len(self._pairs):
