@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+
 import numpy as np
 import pytest
 from desk import bits
@@ -16,7 +18,7 @@ from physicslab.files.scene import load_scene, read_scene, write_scene
 from physicslab.kernels import Numbers, Rows, Vectors, allocating_kernel, compile_kernels
 from physicslab.kernels.broad import near_pairs
 from physicslab.kernels.records import MANIFOLD, POINT, Couples, Manifolds, Points
-from physicslab.prefabs import gas
+from physicslab.prefabs import box, gas
 from physicslab.systems.broad_phase import BroadPhaseSystem
 from physicslab.systems.contact import ContactSystem
 from physicslab.systems.standard import standard_systems
@@ -187,3 +189,25 @@ def test_scalar_pairs_are_sorted_by_rows_and_walls(pairs: list[tuple[int, int, i
     compile_kernels((near_pairs.sort_scalar,))
     near_pairs.sort_scalar(manifolds, scalar, len(pairs), 10)
     assert [pairs[p] for p in scalar] == sorted(pairs)
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="processes are not forked here")
+def test_what_a_forked_process_does_changes_no_contact_here() -> None:
+    """Memory that both share was that of the records: the world went on with what the other had found."""
+    worlds = []
+    for _ in range(2):
+        world = World()
+        box(world, (0.0, -0.5), width=20.0, height=1.0, static=True)
+        for k in range(40):
+            box(world, (0.51 * (k % 8) - 2.0, 0.25 + 0.51 * (k // 8)), velocity=(0.3 * (k % 3), 0.0))
+        world.run(steps=20)
+        worlds.append(world)
+    child = os.fork()
+    if child == 0:
+        worlds[0].run(steps=30)
+        os._exit(0)
+    os.waitpid(child, 0)
+    for world in worlds:
+        world.run(steps=10)
+    places = [world.table(Transform)["position"].tobytes() for world in worlds]
+    assert places[0] == places[1]

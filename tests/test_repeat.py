@@ -7,7 +7,8 @@ import esper
 import pytest
 
 from physicslab import load_scene
-from physicslab.components import Mass, Material, Transform, Velocity
+from physicslab.components import Drag, Mass, Material, Spring, Transform, Velocity
+from physicslab.ecs.config import SimulationConfig
 from physicslab.prefabs import box, circle
 from physicslab.state.state import State
 from physicslab.stepping import repeat
@@ -16,7 +17,9 @@ from physicslab.systems.standard import standard_systems
 from physicslab.systems.system import Stage, System, at
 from physicslab.world import World
 
+SOFT_ISLANDS = "soft islands"
 SCENES = (
+    SOFT_ISLANDS,
     "slope",
     "stack",
     "newtons_cradle",
@@ -77,9 +80,27 @@ def edit(world: World, random: Random) -> World:
     return world
 
 
+def soft_islands() -> World:
+    """Return a world of three heaps with soft contacts: discs, some in drag, and boxes on a spring."""
+    world = World(simulation=SimulationConfig(contacts="soft"))
+    box(world, (0.0, -0.5), width=100.0, height=1.0, static=True, name="floor")
+    for k in range(5):
+        circle(world, (-20.0 + 0.35 * (k % 2), 0.3 + 0.6 * k), radius=0.25)
+        circle(world, (20.0 + 0.3 * (k % 2), 0.3 + 0.6 * k), radius=0.25, mass=1.0 + 30.0 * (k == 4))
+    boxes = [box(world, (0.1 * (k % 2), 0.25 + 0.55 * k), velocity=(0.0, 1.0)) for k in range(5)]
+    world.spawn(Spring(boxes[0], boxes[3], stiffness=40.0, damping=0.5, rest_length=1.2))
+    world.add(world.entities()[2], Drag(0.4))
+    return world
+
+
+def scene(name: str) -> World:
+    """Return the world of that name."""
+    return soft_islands() if name == SOFT_ISLANDS else load_scene(name)
+
+
 def drive(name: str, seed: int) -> list[list[bytes]]:
     """Return the figures of a scene after each of many steps, with edits in between."""
-    world, random, found = load_scene(name), Random(seed), []
+    world, random, found = scene(name), Random(seed), []
     for _ in range(60):
         world = edit(world, random)
         kind = random.randrange(8)
@@ -99,6 +120,22 @@ def test_a_repeated_step_has_the_bits_of_one_made_in_full(name: str, monkeypatch
     monkeypatch.setattr(repeat, "_FEW", -1)
     in_full = drive(name, 3)
     assert [n for n, (one, other) in enumerate(zip(repeated, in_full, strict=True)) if one != other] == []
+
+
+def test_soft_islands_go_on_without_being_chosen_for_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    world, made, go_on = soft_islands(), list[int](), World.go_on
+    world.run(steps=10)
+    steppers = [island.world.stepper_for(0.01).name for island in world.islands.members]
+    assert steppers == ["fused_contact"] * 3
+
+    def counted(self: World, h: float, steps: int) -> int:
+        made.append(go_on(self, h, steps))
+        return made[-1]
+
+    monkeypatch.setattr(World, "go_on", counted)
+    for _ in range(10):
+        world.run(steps=3)
+    assert sum(made) >= 75  # of 90 steps of islands
 
 
 @pytest.mark.parametrize("name", ["slope", "stack", "pendulum", "two_planets", "drop"])

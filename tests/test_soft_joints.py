@@ -335,3 +335,20 @@ def test_a_joint_between_a_hand_and_the_world_does_no_work() -> None:
     world.run(steps=6)
     after = measure_account(world).energy
     assert (after["joints"], after["hand"]) == (before["joints"], before["hand"])
+
+
+@pytest.mark.parametrize("contacts", ["auto", "soft"])
+@pytest.mark.parametrize("kind", [Rope, Rod, Pin])
+def test_joints_that_an_edit_has_put_far_apart_leave_what_rests_at_rest(kind: Any, contacts: str) -> None:
+    """Springs of soft joints had turned the disc by radians in a step, and left 236 J in it."""
+    world = World(physics=PhysicsConfig(gravity_mode="none"), simulation=SimulationConfig(contacts=contacts))
+    a, b, *_ = (
+        world.spawn(Transform((x, 0.3 * (x == 2.2))), Velocity(), Mass(mass), Shape.circle(0.25))
+        for x, mass in ((0.0, 1.0), (2.2, 2.0), (3.2, 1.0), (3.7, 1.0))
+    )
+    more = {"anchor_b": (-1.35, 0.0)} if kind is Pin else {"length": 1.35}
+    world.spawn(kind(a, b, anchor_a=(0.0, 0.2), **more))
+    world.run(seconds=0.5)
+    assert measure_energy(world).total < 1e-20
+    (state,) = joint_states(world)
+    assert state.stretch < 1e-6

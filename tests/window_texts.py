@@ -14,7 +14,7 @@ from pathlib import Path
 import physicslab
 from physicslab.components.quantities import KIND_OF_UNIT, QUANTITIES
 from physicslab.diagnostics import free_body
-from physicslab.diagnostics.energy import ACCOUNT_WORDS
+from physicslab.diagnostics.energy import ACCOUNT_WORDS, STORED_WORDS
 from physicslab.ecs.component import COMPONENTS
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.fields import Field
@@ -30,6 +30,7 @@ from physicslab.view.controls.controls import CONTROLS
 from physicslab.view.controls.tools import TOOLS
 from physicslab.view.window.copying import Copying
 from physicslab.view.window.desk import LEVELS
+from physicslab.view.workbench import world_panel
 from physicslab.view.workbench.copies_panel import shown_name
 from physicslab.view.workbench.impact_panel import HEADS
 
@@ -97,11 +98,16 @@ def tables() -> dict[str, list[str]]:
         ],
         "tags": ["all", *{tag for one in SCENES.values() for tag in (*one.teaches, *one.tags)}],
         "copies": [shown_name(name) for name in Copying.FIELDS],
+        "microscope": [
+            *("before", "after"),
+            *(f"{body} {word}" for body in "AB" for word in ("before", "after", "moves", "turns")),
+        ],
         "impacts": [one for one in HEADS if len(one) > 2],
         "player": player_texts(), "quantities": [*QUANTITIES, *KIND_OF_UNIT.values()],
         "levels": [*LEVELS, *LEVELS.values()],
         "methods": [one.title for one in (*INTEGRATORS.values(), *SPLIT_METHODS.values())],
-        "accounts": list(ACCOUNT_WORDS.values()),
+        "accounts": [*ACCOUNT_WORDS.values(), *STORED_WORDS.values()],
+        "settings": [text for texts in world_panel._NUMBERS.values() for text in texts],
         "forces": [*free_body._NAMES.values(), *(kind.__name__.lower() for kind in JOINTS)],
         "reasons": list(SENTENCES.values()),
         "themes": [theme.name for theme in THEMES],

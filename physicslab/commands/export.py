@@ -14,7 +14,6 @@ from physicslab.commands.output import Output
 from physicslab.commands.progress import Progress
 from physicslab.commands.usage import POSES
 from physicslab.commands.variations import Variation, combinations, variations
-from physicslab.diagnostics.joint_closing import close_joints
 from physicslab.ecs.fields import InvalidValue
 from physicslab.ecs.text import printable, shortened
 from physicslab.export.film import Film, NoEncoder
@@ -25,6 +24,7 @@ from physicslab.files.replace import reason_of
 from physicslab.files.scene import SceneError
 from physicslab.kernels.tiers import Tiers
 from physicslab.lab.jobs import ProcessEnded, in_processes
+from physicslab.state.joint_closing import close_joints
 from physicslab.state.masses import Diverged
 from physicslab.stepping.small import is_small
 from physicslab.world import World
@@ -195,6 +195,7 @@ def make_run(task: str) -> dict[str, Any]:
     try:
         world = opened(arguments, again=True)
         if arguments.set:
+            world.synchronise()
             close_joints(world)  # or the first picture has the rod's former length, and its energy
         name = name_of(world, arguments)
         recorder = RunRecorder(world)

@@ -1,6 +1,7 @@
 """The list of near pairs, with their records carried over, and those of them that are solved in slots."""
 
 import mmap
+import sys
 from typing import Any
 
 import numpy as np
@@ -57,7 +58,8 @@ def list_all(state: State, pairs: NDArray[np.int64], count: int) -> None:
 
 def _zeros(count: int, record: np.dtype[Any]) -> NDArray[Any]:
     """Return zeros (count,), no page of which is touched before it is used, as numpy's may be."""
-    return np.frombuffer(mmap.mmap(-1, count * record.itemsize), record)
+    own = {} if sys.platform == "win32" else {"flags": mmap.MAP_PRIVATE | mmap.MAP_ANONYMOUS}  # after a fork
+    return np.frombuffer(mmap.mmap(-1, count * record.itemsize, **own), record)
 
 
 def _make_table(state: State) -> None:

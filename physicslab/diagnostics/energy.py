@@ -283,6 +283,10 @@ ACCOUNT_WORDS: dict[str, str] = {
     "numerical": "error",
 }
 """The name of each account in plain words."""
+STORED_WORDS = {
+    "coulomb": "charges", "electric_field": "electric field", "medium": "media", "spring": "springs",
+}  # fmt: skip
+"""Plain words for forces that store energy, where their names are code."""
 
 
 def flows(booked: Mapping[str, float]) -> list[tuple[str, float]]:

@@ -8,11 +8,11 @@ from numpy.typing import NDArray
 from physicslab.components import Held, Material, Rod
 from physicslab.diagnostics.contact_warnings import contact_graph, rigid_setting
 from physicslab.diagnostics.energy import measure_account, measure_kinetic
-from physicslab.diagnostics.joint_closing import closing_places
 from physicslab.diagnostics.step_warnings import ModelWarning
 from physicslab.ecs.sentences import sentence
 from physicslab.kernels.joints.blocks import ACTIVE, GIVES, ROW, STATE
 from physicslab.kernels.joints.measured import AX, BX, BY, TURN_A
+from physicslab.state.joint_closing import closing_places
 from physicslab.state.joint_figures import (
     figures_of,
     measured_terms,

@@ -93,6 +93,9 @@ class Joints:
     apart : int64 array (k, 2)
         The pairs of bodies a < b that do not touch each other, sorted: those of a joint, and all that welds
         make one thing of.
+    placed : bytes, optional
+        The places of bodies after the last step by soft contacts; ``None`` where it is not known whether they
+        were edited since, as after going back.
     wholes : dict of int to int
         For each entity that is a part of such a thing, the first of its parts.
     """
@@ -102,6 +105,7 @@ class Joints:
         self._settings, self.beside_contacts, self.watched = list[bytes](), False, False
         self._entities = np.zeros(0, np.int64)
         self._joined: tuple[Any, ...] = ()
+        self.placed: bytes | None = b""
         self.wholes: dict[int, int] = {}
 
     def _take(self, joints: Sequence[Joint], rows: Sequence[Row]) -> None:
@@ -185,7 +189,7 @@ class Joints:
             if before_it and len(before_it[0]) == joint.size:
                 for array, values in zip(self._carried, before_it, strict=True):
                     array[joint.own] = values
-        self._settings, self._entities = self._columns(index), entities
+        self._settings, self._entities, self.placed = self._columns(index), entities, b""
         self._joined = tuple(
             (joint.entity, joint.kind, int(entities[joint.a]), int(entities[joint.b])) for joint in joints
         )
@@ -247,7 +251,7 @@ class Joints:
     def restore(self, kept: Sequence[tuple[int, str, Sequence[float]]]) -> None:
         """Give back what :meth:`kept` yielded; what no joint of now has is dropped."""
         held = {(entity, kind): impulses for entity, kind, impulses in kept}
-        self.impulse[:] = 0.0
+        self.impulse[:], self.placed = 0.0, None
         self.buffers[0][:] = 0.0  # gradients: they are found again, where bodies are then
         for joint in self.joints:
             impulses = held.get((joint.entity, joint.kind.__name__), ())

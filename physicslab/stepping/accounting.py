@@ -10,11 +10,14 @@ from physicslab.kernels import digest, direct_entry, energy
 from physicslab.kernels.accounts import FIELDS, JOINTS
 from physicslab.ode.system import OdeSystem
 from physicslab.state.account import Balance
+from physicslab.state.joint_closing import far_places
 from physicslab.state.state import State
 from physicslab.systems.schedule import Schedule
 from physicslab.systems.spring import SpringSystem
 from physicslab.systems.system import ForceSystem, Stage, System
 
+_FAR = 0.01
+"""The turn [rad] from which on a joint that an edit has put apart is closed at once."""
 _MANY = 256
 """Rows from which on it is seen by a digest that nothing was changed since the last step."""
 
@@ -114,6 +117,37 @@ def put_together(state: State, forces: Sequence[ForceSystem], ode: OdeSystem) ->
         ode.place(state, places)
         state.account.sums[JOINTS] += np.subtract(balance_of(state, forces), before)
     ode.set_going()
+
+
+def put_far_together(state: State, forces: Sequence[ForceSystem]) -> None:
+    """Put together what an edit, or a scene, has put so far apart that soft joints would turn it by much.
+
+    Their springs would leave it spinning: they pull along arms that have turned away before they let go. The
+    energy goes to joints.
+    """
+    joints, places = state.joints, _places(state)
+    known, joints.placed = joints.placed, places
+    if known == places or state.sleep.count or (known is None and joints.impulse.any()):
+        return
+    found = far_places(state, _FAR)
+    if found is None:
+        return
+    if not state.account.is_open:
+        open_account(state, forces)
+    before, transform = balance_of(state, forces), state.table(Transform)
+    transform["position"][:], transform["angle"][:] = found
+    state.account.sums[JOINTS] += np.subtract(balance_of(state, forces), before)
+    state.contacts.stale = True
+
+
+def note_places(state: State) -> None:
+    """Note where soft joints have left what they hold."""
+    state.joints.placed = _places(state)
+
+
+def _places(state: State) -> bytes:
+    transform = state.table(Transform)
+    return transform["position"].tobytes() + transform["angle"].tobytes()
 
 
 def acts_unbooked(system: System) -> bool:

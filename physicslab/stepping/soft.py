@@ -11,7 +11,7 @@ from physicslab.kernels.clock import time_after
 from physicslab.kernels.loading import working_ns
 from physicslab.state.masses import check_finite
 from physicslab.state.state import State
-from physicslab.stepping.accounting import held_in, open_account
+from physicslab.stepping.accounting import held_in, note_places, open_account, put_far_together
 from physicslab.stepping.bounds import return_inside
 from physicslab.stepping.plan import StepPlan
 from physicslab.stepping.stepper import Advance, Stepper, divisions, falls_far
@@ -79,6 +79,8 @@ class Soft(Stepper):
 
     def advance(self, state: State, h: float, steps: int) -> Advance:
         """Make ``steps`` steps or fewer; where one fails, those before it are counted."""
+        if len(state.joints):
+            put_far_together(state, self._schedule.forces)
         span = self._span(state, h)
         refill(state)
         if state.sleep.count:
@@ -136,6 +138,7 @@ class Soft(Stepper):
                 state.samples.take(state, time_after(state.time, span.dt, made))
         keep_places(state)
         if len(state.joints):
+            note_places(state)
             state.joints.force[:] = state.joints.impulse / (state.contacts.impulse_dt or span.h)
         self._note_energy(state)
         if wanted > 1:

@@ -248,9 +248,11 @@ def _touch_segment(x: float, y: float, a: Outline, b: Outline, pool: Vectors, ma
     if not own:
         return apart
     if of_vertex:
-        separation = gap - r
+        separation, height = gap - r, ux * (x - ex) + uy * (y - ey)
         if separation > margin:
             return Touch(separation, ux, uy, 0, none, none)
+        if height < 0.0:  # behind it
+            return Touch(-height, -ux, -uy, 0, none, none)
         point = Corner(ex + 0.5 * separation * ux, ey + 0.5 * separation * uy, separation, feature)
         return Touch(separation, ux, uy, 1, point, none)
     if height < 0.0:  # behind it

@@ -7,7 +7,7 @@ from typing import Literal
 
 from physicslab.components import Held, Mass, Transform, Velocity
 from physicslab.contacts.report import count_near_pairs
-from physicslab.diagnostics.energy import ACCOUNT_WORDS, Audit, flows, summation
+from physicslab.diagnostics.energy import ACCOUNT_WORDS, STORED_WORDS, Audit, flows, summation
 from physicslab.diagnostics.reference_solution import ReferenceSolution, reference_solution
 from physicslab.diagnostics.scales import scales_of
 from physicslab.ecs.sentences import listed
@@ -199,7 +199,10 @@ def _energy_lines(figures: WorldFigures) -> list[Line]:
     ]
     if energy.potential:
         lines.append(Line("Potential energy", figures.joules(energy.stored)))
-        lines += [Line(name, figures.joules(stored), "detail") for name, stored in energy.potential.items()]
+        lines += [
+            Line(STORED_WORDS.get(name, name), figures.joules(stored), "detail")
+            for name, stored in energy.potential.items()
+        ]
     return [
         *lines,
         Line("Total energy", figures.joules(energy.total)),

@@ -295,7 +295,7 @@ _NUMBERS = {
     "dt": ("Step", "Length of a step; the error falls with it"), "substeps": ("Substeps", "Parts of a step"),
     "linear_damping": ("Damping", "Share of the velocity that is lost a second"),
     "angular_damping": ("Damping of turns", "Share of the spin that is lost a second"),
-    "coulomb_constant": ("Coulomb's constant", "How strongly charges act on each other"),
+    "coulomb_constant": ("Coulomb constant", "How strongly charges act on each other"),
     "magnetic_field": ("Magnetic field", "Out of the plane where positive"),
 }  # fmt: skip
 _CHOICES = {

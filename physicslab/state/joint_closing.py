@@ -8,7 +8,6 @@ from physicslab.kernels.joints.measured import AX, BX, TURN_A
 from physicslab.state.joint_figures import errors_of_rows, measured_terms
 from physicslab.state.joint_rows import Role
 from physicslab.state.state import State
-from physicslab.world import World
 
 type Numbers = NDArray[np.float64]
 """A float64 array (n,)."""
@@ -55,12 +54,23 @@ def closing_places(state: State, least: float, *, limits: bool = False) -> tuple
     return None
 
 
-def close_joints(world: World) -> None:
+def far_places(state: State, turn: float = 0.0) -> tuple[Numbers, Numbers] | None:
+    """Return places (rows, 2) [m] and angles (rows,) [rad] at which joints hold, ropes and limits too.
+
+    ``None`` where they hold already, where none are found, and where no body would turn by ``turn`` [rad].
+    """
+    if not 0 < len(state.joints) <= _MOST_ROWS:
+        return None
+    transform, found = state.table(Transform), closing_places(state, _APART, limits=True)
+    if found is None or np.abs(found[1] - transform["angle"]).max() < turn:
+        return None
+    return None if np.array_equal(found[0], transform["position"]) and not turn else found
+
+
+def close_joints(state: State) -> None:
     """Move bodies to where joints hold them, if something was set by which they are apart; else nothing."""
-    world.synchronise()
-    if not 0 < len(world.joints) <= _MOST_ROWS:
-        return
-    world.joints.refresh(world.entity_index)
-    transform, found = world.table(Transform), closing_places(world, _APART, limits=True)
-    if found is not None and not np.array_equal(found[0], transform["position"]):
+    state.joints.refresh(state.entity_index)
+    found = far_places(state)
+    if found is not None:
+        transform = state.table(Transform)
         transform["position"][:], transform["angle"][:] = found
