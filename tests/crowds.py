@@ -5,7 +5,7 @@ from __future__ import annotations
 import random
 from typing import Any
 
-__all__ = ["crowd"]
+__all__ = ["crowd", "few"]
 
 _INTEGRATORS = ("auto", "auto", "auto", "leapfrog", "symplectic_euler", "dop853", "implicit_midpoint")
 
@@ -24,6 +24,16 @@ def crowd(seed: int) -> dict[str, Any]:
         bodies.insert(0, {"id": "floor", "Transform": {"position": [0.0, -0.5]}, "Shape": size})
     document = {"physics": _physics(rng, width), "simulation": _simulation(rng), "entities": bodies + springs}
     return {"format": "physicslab-scene/1", "name": f"crowd {seed}"} | document
+
+
+def few(seed: int) -> dict[str, Any]:
+    """Return the first crowd from a seed on of up to 12 bodies that move, which chooses how it is stepped."""
+    document = crowd(seed)
+    while sum("Velocity" in entity and "Mass" in entity for entity in document["entities"]) > 12:
+        seed += 1
+        document = crowd(seed)
+    document["simulation"] |= {"sleeping": "auto", "integrator": "auto", "contacts": "auto"}
+    return document
 
 
 def _body(rng: random.Random, number: int, width: float, spread: float) -> dict[str, Any]:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Hashable
+from functools import partial
+
 import numpy as np
 import pygame
 
@@ -10,8 +13,9 @@ from physicslab.desktop.sandbox import Sandbox
 from physicslab.ecs.config import PhysicsConfig, WindowConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.systems.standard import standard_systems
-from physicslab.view.canvas.canvas import Canvas
+from physicslab.view.canvas.canvas import Canvas, Painter
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
+from physicslab.view.toolkit.pictures import Pictures
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.window import Window
 from physicslab.view.workbench.trust_badge import BADGE
@@ -39,6 +43,56 @@ def bits(world: World) -> bytes:
     return b"".join(np.ascontiguousarray(column).tobytes() for column in columns)
 
 
+class LateCanvas(PygameCanvas):
+    """Paints a frame when its pixels are looked at: painting is half the work of a frame, and few are."""
+
+    def __init__(self, surface: pygame.Surface) -> None:
+        self._due: list[Callable[[], None]] = []
+        super().__init__(surface)
+
+    @property
+    def surface(self) -> pygame.Surface:
+        """The surface with all that is drawn."""
+        due, self._due = self._due, []
+        for draw in due:
+            draw()
+        return self._surface
+
+    @surface.setter
+    def surface(self, surface: pygame.Surface) -> None:
+        self._surface = surface
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height [px]."""
+        return self._surface.get_size()
+
+    def keep(self, key: Hashable, draw: Callable[[], None]) -> None:
+        """Begin the picture: what is due of the one before is seen by nothing."""
+        self._due.clear()
+        if self._kept is not None and self._kept_key == (key, self.size):
+            self._due.append(partial(super().keep, key, draw))
+        else:
+            super().keep(key, draw)
+
+    def paint(self, painter: Painter) -> None:
+        """Let panels be drawn later; what reads the picture has it at once."""
+        if isinstance(getattr(painter, "__self__", None), Pictures | Ui):
+            self._due.append(partial(super().paint, painter))
+        else:
+            super().paint(painter)
+
+
+def _late(method: str) -> Callable[..., None]:
+    return lambda canvas, *given, **named: canvas._due.append(
+        partial(getattr(PygameCanvas, method), canvas, *given, **named)
+    )
+
+
+for _method in ("clear", "glows", "discs", "boxes", "rounded", "lines", "panel", "text"):
+    setattr(LateCanvas, _method, _late(_method))
+
+
 class Desk:
     """A world in a window of 1280 x 720 whose camera shows 100 px per metre, the origin in the middle.
 
@@ -50,7 +104,7 @@ class Desk:
     ) -> None:
         pygame.display.init()
         if canvas is None:
-            canvas = PygameCanvas(pygame.display.set_mode((1280, 720)))
+            canvas = LateCanvas(pygame.display.set_mode((1280, 720)))
         self.window = Window(canvas, config)
         self.window.reduced_motion = True  # a picture shows at once what was done
         self.sandbox = Sandbox(world, self.window, clock=lambda: 0.0)
@@ -108,6 +162,8 @@ class Desk:
         """Let frames go by."""
         for _ in range(count):
             self.sandbox.frame(elapsed)
+        if count > 1 and isinstance(self.window.canvas, LateCanvas):
+            self.window.canvas.surface.get_size()  # what has settled is painted
 
     def drag(self, start: tuple[float, float], velocity: tuple[float, float], frames: int) -> Vector2:
         """Press at a point, move the cursor at a speed [m/s] for so many frames, and let go there."""
@@ -131,7 +187,7 @@ def sized(size: tuple[int, int], world: World | None = None, text_scale: float =
     """Return a desk with a window of a size [px], drawn in software, with its panels built."""
     pygame.display.init()
     pygame.display.set_mode((64, 64))
-    desk = Desk(empty_world() if world is None else world, PygameCanvas(pygame.Surface(size, 0, 32)))
+    desk = Desk(empty_world() if world is None else world, LateCanvas(pygame.Surface(size, 0, 32)))
     desk.window.text_scale = text_scale
     desk.frames(SETTLED)
     return desk

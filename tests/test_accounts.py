@@ -395,20 +395,19 @@ def test_what_a_damper_takes_is_damping() -> None:
     assert abs(account.energy["numerical"]) < 1e-6 * abs(account.energy["damping"])
 
 
-@pytest.mark.parametrize("coulomb", [0.0, 0.5])
-@pytest.mark.parametrize("gravity", ["none", "planet"])
+@pytest.mark.parametrize(("gravity", "coulomb"), [("none", 0.5), ("planet", 0.0), ("planet", 0.5)])
 def test_what_a_damper_takes_is_damping_where_other_forces_kick_too(gravity: str, coulomb: float) -> None:
     world = empty_world(gravity=(0.0, 0.0))
     world.physics = dataclasses.replace(world.physics, gravity_mode=gravity, coulomb_constant=coulomb)
-    with_simulation(world, integrator="leapfrog", contacts="soft", dt=1 / 960)
+    with_simulation(world, integrator="leapfrog", contacts="soft", dt=1 / 240)
     left, right = circle(world, (0, 0), radius=0.2), circle(world, (2, 0), radius=0.2, velocity=(1, 1))
     for disc in (left, right):
         world.add(disc, Charge(1.0))
     world.spawn(Spring(a=left, b=right, rest_length=1.5, stiffness=20.0, damping=2.0))
-    world.run(seconds=1.0)
+    world.run(seconds=0.5)
     account = measure_account(world)
     assert account.energy["damping"] < -1.0
-    assert abs(account.energy["numerical"]) < 1e-3 * abs(account.energy["damping"])
+    assert abs(account.energy["numerical"]) < 1e-4 * abs(account.energy["damping"])
 
 
 @pytest.mark.parametrize("integrator", ["auto", "leapfrog"])
@@ -459,7 +458,7 @@ def test_what_a_pool_gives_and_takes_by_kicks_is_that_of_fields_and_of_damping(
 ) -> None:
     """A box comes in by a side wall, where the pressure of the fluid works; drag is of the first order."""
     errors = []
-    for dt in (1 / 120, 1 / 480):
+    for dt in (1 / 60, 1 / 240):
         world = with_simulation(empty_world(), integrator="leapfrog", contacts="soft", dt=dt)
         drag = 20.0 if cause == "damping" else 0.0
         world.spawn(
@@ -470,7 +469,7 @@ def test_what_a_pool_gives_and_takes_by_kicks_is_that_of_fields_and_of_damping(
             circle(world, (-2, 0))
         else:
             world.install(LooksAtKicks())
-        world.run(seconds=0.7)
+        world.run(seconds=0.5)
         account = measure_account(world)
         assert abs(account.energy[cause]) > 1.0
         errors.append(abs(account.energy["numerical"]))

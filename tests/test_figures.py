@@ -11,7 +11,7 @@ from recording import RecordingCanvas
 from test_hud import frame, recorded, row
 
 from physicslab.components import Drag, Mass, Shape, Spring, Trail, Transform, Velocity
-from physicslab.diagnostics.energy import measure_account, measure_energy, measure_momentum
+from physicslab.diagnostics.energy import STORED_WORDS, measure_account, measure_energy, measure_momentum
 from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import load_scene
 from physicslab.prefabs import circle, pendulum
@@ -39,7 +39,7 @@ def test_every_energy_stands_beside_its_name() -> None:
     energy = measure_energy(world)
     assert set(energy.potential) == {"gravity", "spring"}
     for name, stored in energy.potential.items():
-        assert row(desk, name) == quantity(stored, "J")
+        assert row(desk, STORED_WORDS.get(name, name)) == quantity(stored, "J")
     assert row(desk, "Kinetic energy") == quantity(energy.kinetic, "J")
     assert row(desk, "Potential energy") == quantity(sum(energy.potential.values()), "J")
     assert row(desk, "Total energy") == quantity(energy.total, "J")

@@ -8,9 +8,9 @@ A few random scenes are tried with every run of the tests, 2,000 by
 from __future__ import annotations
 
 import json
+from typing import Any
 
-import pytest
-from crowds import crowd
+from crowds import crowd, few
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
@@ -31,10 +31,8 @@ def bits(world: World) -> list[bytes]:
     return [world.table(kind)[name][1:].tobytes() for kind, name in columns]
 
 
-def goes_on(seed: int, steps: int, contacts: str) -> None:
+def goes_on(document: dict[str, Any], steps: int) -> None:
     """Run a scene, save and load it, and go on with both."""
-    document = crowd(seed)
-    document["simulation"]["contacts"] = contacts
     world = read_scene(document)
     try:
         world.run(steps=steps)
@@ -50,9 +48,12 @@ def goes_on(seed: int, steps: int, contacts: str) -> None:
 EXAMPLES = settings().max_examples
 
 
-@pytest.mark.parametrize("contacts", ["soft", "auto"])  # for a processor each
-@settings(max_examples=20 if EXAMPLES <= 40 else 5 * EXAMPLES // 3, derandomize=True)
-@given(st.integers(0, 2**31), st.sampled_from((1, 20, 40, 120)))
+CASES = settings(max_examples=20 if EXAMPLES <= 40 else 5 * EXAMPLES // 3, derandomize=True)
+SEEDS, STEPS = st.integers(0, 2**31), st.sampled_from((1, 20, 40, 120))
+
+
+@CASES
+@given(SEEDS, STEPS)
 @example(3368, 40).via("impulses of a contact that exact collisions had taken apart")
 @example(3552, 40).via("the order of blocks, of which the last were empty when there was no room")
 @example(115681, 120).via("the forces under which a body on a spring fell asleep")
@@ -62,8 +63,16 @@ EXAMPLES = settings().max_examples
 @example(3456, 1).via("a body that is hit meets one that was not near it before, in one substep")
 @example(4215201, 120).via("loads by normals of contacts in blocks, which records do not follow")
 @example(78572410, 1).via("pairs listed again between two rounds of impacts, in one of both worlds")
-def test_a_scene_goes_on_from_a_file_with_the_same_bits(contacts: str, seed: int, steps: int) -> None:
-    goes_on(seed, steps, contacts)
+def test_a_scene_goes_on_from_a_file_with_the_same_bits(seed: int, steps: int) -> None:
+    document = crowd(seed)
+    document["simulation"]["contacts"] = "soft"
+    goes_on(document, steps)
+
+
+@CASES
+@given(SEEDS, STEPS)
+def test_a_scene_of_few_bodies_does_with_the_contacts_that_it_chooses(seed: int, steps: int) -> None:
+    goes_on(few(seed), steps)
 
 
 def test_a_scene_of_about_64_goes_on_from_a_file_after_a_removal() -> None:

@@ -21,6 +21,7 @@ from physicslab.diagnostics.impact_table import ImpactReader, impact_table
 from physicslab.diagnostics.samples import Record
 from physicslab.ecs.conditions import Condition
 from physicslab.ecs.quantity_text import Expression, InvalidText, Quantity
+from physicslab.ensembles import ensemble
 from physicslab.files.scene import load_scene
 from physicslab.languages.catalogue import languages
 from physicslab.lessons.catalogue import LESSONS, LIBRARY, find_lesson
@@ -265,17 +266,31 @@ def test_of_very_many_impacts_in_a_step_evenly_chosen_ones_are_noted() -> None:
     laws = PhysicsConfig(gravity_mode="none", bounds=(0.0, 0.0, 1.0, 1.0), bounds_restitution=1.0)
     world = World(physics=laws)
     circle(world, (0.5, 0.5), radius=0.1, velocity=(2e5, 0.0), restitution=1.0, friction=0.0, name="b")
-    circle(world, (0.5, 0.8), radius=0.1, velocity=(0.0, 2.0), restitution=1.0, friction=0.0, name="other")
+    for x, height in ((0.12, 0.892), (0.37, 0.8907), (0.62, 0.8894), (0.87, 0.8)):
+        circle(world, (x, height), radius=0.1, velocity=(0.0, 2.0), restitution=1.0, name=f"at {height}")
     world.contacts.read = True
-    record = Record(world, ("b.vx", "other.vy"))
+    record = Record(world, ("b.vx", *(f"at {height}.vy" for height in (0.892, 0.8907, 0.8894, 0.8))))
     record.add()
     world.step()
     record.add()
     assert world.collisions > 4000
     times = record.breaks["b.vx"]
-    assert 500 < len(times) <= 1000 and np.diff(times).max() < 1.5 * world.time / len(times)
+    assert 500 < len(times) <= 1000 and np.diff(times).max() < 2.0 * world.time / len(times)
     assert all({abs(v) for v in sides} == {2e5} for sides in record.sides["b.vx"].values())
-    assert record.breaks["other.vy"] == []
+    assert [len(breaks) for breaks in record.breaks.values()] == [len(times), 1, 1, 1, 0]
+
+
+def test_a_run_of_many_impacts_that_is_recorded_at_once_has_all_of_them() -> None:
+    """One of 65 was noted of a run of 65,000 impacts: the mean of an energy that stays was 15 % off."""
+    laws = PhysicsConfig(gravity_mode="none", bounds=(0.0, 0.0, 1.0, 1.0), bounds_restitution=1.0)
+    world = World(physics=replace(laws, bounds_friction=0.0))
+    circle(world, (0.31, 0.3), radius=0.1, velocity=(37.0, 9.0), restitution=1.0, friction=0.0, name="b")
+    circle(world, (0.6, 0.6), radius=0.1, velocity=(3.0, -8.0), restitution=1.0, friction=0.0, name="c")
+    result = ensemble(
+        world, {"b.Mass.mass": [1.0]}, measure={"mean": "mean(b.vx^2 + b.vy^2 + c.vx^2 + c.vy^2)"},
+        seconds=20.0, executor="serial",
+    )  # fmt: skip
+    assert result.columns["mean"][0] == pytest.approx(37.0**2 + 9.0**2 + 3.0**2 + 8.0**2, rel=1e-7)
 
 
 def test_figures_reach_up_to_the_end_of_a_run() -> None:

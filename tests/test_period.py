@@ -169,6 +169,13 @@ def test_damping_of_motion_and_of_turning_slow_each_its_own() -> None:
     assert found is not None and found.seconds == pytest.approx(1.040940008, rel=1e-8)
 
 
+def test_a_rate_beyond_all_numbers_is_no_period() -> None:
+    world = empty_world(gravity_mode="none")
+    ball = circle(world, (0.0, 0.0), mass=1e-200)
+    world.add(ball, Spring(anchor_b=(3.0, 0.0), rest_length=3.0, stiffness=1e200))
+    assert period_of(world, ball) is None
+
+
 def test_a_charge_in_a_magnetic_field_has_no_period_of_its_spring() -> None:
     world = empty_world(gravity_mode="none", magnetic_field=5.0)
     ball = circle(world, (0.0, 0.0), radius=0.1)

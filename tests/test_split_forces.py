@@ -1,6 +1,7 @@
 """What springs and drag act on beside contacts moves as their forces have it, however stiff they are."""
 
 import math
+import time
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -14,7 +15,7 @@ from hypothesis import strategies as st
 from physicslab import load_scene
 from physicslab.components import Charge, Drag, Held, Mass, Molecule, Shape, Spring, Transform, Velocity
 from physicslab.diagnostics.energy import measure_account, measure_energy, measure_momentum
-from physicslab.ecs.config import PhysicsConfig
+from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import read_scene, write_scene
 from physicslab.integrators.dop853 import DOP853
@@ -274,3 +275,26 @@ def test_dampers_of_what_is_sub_integrated_are_not_evaluated_again_for_their_wor
     assert not world.stepper.hooks
     assert account.energy["damping"] < 0.0
     assert abs(account.energy["numerical"]) < 1e-5 * -account.energy["damping"]
+
+
+@pytest.mark.parametrize("quadratic", [1e6, 1e9, 1e12])
+def test_what_falls_at_its_terminal_speed_does_so_in_few_steps(quadratic: float) -> None:
+    """At 1e12 kg/m a frame took 3 s: each step of the flow was a twentieth of the time of decay."""
+    world = World(simulation=SimulationConfig(contacts="soft", collisions="step"))
+    box(world, (0.0, -9.0), width=9.0, height=1.0, static=True)
+    ball = circle(world, (0.0, 5.0), radius=0.2, mass=1.0, velocity=(3.0, 0.0))
+    other = circle(world, (1.0, 5.0), radius=0.2, mass=1.0)
+    for body, drag in ((ball, quadratic), (other, 0.5)):
+        world.add(body, Drag(quadratic=drag))
+    world.run(steps=2)
+    before, began = world.component(ball, Transform).position, time.process_time()
+    world.run(steps=30)
+    assert time.process_time() - began < 0.5
+    falls = math.sqrt(9.81 / quadratic)
+    assert world.component(ball, Velocity).linear.y == pytest.approx(-falls, rel=1e-13)
+    fallen = world.component(ball, Transform).position - before
+    assert tuple(fallen) == pytest.approx((0.0, -0.5 * falls), rel=1e-9, abs=1e-12)
+    at = math.sqrt(2.0 * 9.81) * math.tanh(math.sqrt(0.5 * 9.81) * world.time)
+    assert world.component(other, Velocity).linear.y == pytest.approx(-at, rel=1e-9)
+    account = measure_account(world)
+    assert abs(account.energy["numerical"]) < 1e-6 and account.momentum["numerical"].magnitude < 1e-10

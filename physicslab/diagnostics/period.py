@@ -130,8 +130,11 @@ def _rate(spring: Spring, gains: Mapping[float, float]) -> float:
     """
     decays, gain = np.array([*gains]), np.array([*gains.values()])
     system = np.zeros((1 + len(gain), 1 + len(gain)))  # of the stretch and of these velocities
-    system[0, 1:], system[1:, 0] = 1.0, -spring.stiffness * gain
-    system[1:, 1:] = -spring.damping * gain[:, np.newaxis] - np.diag(decays)
+    with np.errstate(over="ignore"):
+        system[0, 1:], system[1:, 0] = 1.0, -spring.stiffness * gain
+        system[1:, 1:] = -spring.damping * gain[:, np.newaxis] - np.diag(decays)
+    if not np.isfinite(system).all():
+        return 0.0
     found = np.linalg.eigvals(system)
     rate = float(found.imag.max())
     return rate if rate > _CREEPS * float(np.abs(found).max()) else 0.0

@@ -31,7 +31,7 @@ _BOTH_SIDES = {
 _OF_MOTION = ("speed", "momentum", "angular momentum", "kinetic", "potential", "energy of", "total energy")
 """The beginnings of other quantities that the motion of bodies tells."""
 _MOST = 1_000
-"""Impacts of a block of the log beyond which evenly chosen ones are noted: where a body is squeezed to a
+"""Moments of a step at which impacts of a body are noted at most, evenly chosen: where one is squeezed to a
 standstill, half a million come in a step."""
 _MANY = 500
 """Impacts of a step times bodies beyond which the world is not read at each, which takes as long as many
@@ -157,9 +157,8 @@ class Record:
         for records in self._impacts.read():
             joints, entities = self._world.joints.joints, self._world.entity_index.entities
             held = {int(entities[row]) for joint in joints for row in (joint.a, joint.b)}
-            if len(own) == len(self._sources) and held.isdisjoint(own):
-                records = records[np.isin(records["entity_a"], own) | np.isin(records["entity_b"], own)]
-            records = records[:: max(1, -(-len(records) // _MOST))]
+            whole = len(own) < len(self._sources) or not held.isdisjoint(own)
+            records = records[self._chosen(records, {None, *own} if whole else {*own})]
             for record in records:
                 time, pair = float(record["time"]), [int(record[name]) for name in ("entity_a", "entity_b")]
                 for (name, breaks), (quantity, body) in zip(self.breaks.items(), self._sources, strict=True):
@@ -173,6 +172,19 @@ class Record:
                         self.sides[name][time] = before, after
             if self._before is not None and self._before[0] < self._world.time:
                 self._note_derived(records, held, *self._before)
+
+    def _chosen(self, records: NDArray[Any], bodies: set[int | None]) -> NDArray[np.bool_]:
+        """Return which impacts are noted: the first and the last of each body in each share of a step.
+
+        ``None`` is the world, of which all are.
+        """
+        times, chosen = records["time"], np.zeros(len(records), np.bool_)
+        shares = np.floor(times * (0.5 * _MOST / self._world.simulation.dt))
+        for body in bodies:
+            takes_part = (records["entity_a"] == body) | (records["entity_b"] == body) | (body is None)
+            begins = np.diff(shares[takes_part], prepend=np.nan, append=np.nan) != 0.0
+            chosen |= takes_part & np.isin(times, times[takes_part][begins[1:] | begins[:-1]])
+        return chosen
 
     def _note_derived(
         self, impacts: NDArray[Any], held: set[int], begin: float, rows: NDArray[np.int64],

@@ -20,9 +20,11 @@ from physicslab.kernels.wide_layout import WIDE
 
 _FOLLOWED = 0.05
 """Largest rate times step of what drag alone slows: a step is then right to 3e-9."""
-_EQUAL, _MOST = 1_250, 2**50
+_EQUAL, _MOST = 32, 2**50
 """Number of steps that are equally long: where there would be more, each goes by the speed, which decreases.
 Then the largest number that is reckoned with. A number is a power of two."""
+_STEADY = 2.0**-104
+"""Share of the square of a velocity below which that of its change is rounding: it is the terminal one."""
 
 
 @always_inlined
@@ -39,7 +41,7 @@ def fall_in_drag(
 
     ``drag`` (3 d,) has of each drag by speed and by its square, of its mass, and the mass; where that is 0
     the row is the world's, which fills the last eight. What drag takes is integrated beside the motion, by
-    the same method.
+    the same method. What has come to its terminal velocity goes on with it, in a step of any length.
     """
     n, sixth, weight = len(rows), 1.0 / 6.0, everywhere(0.0)
     taken, px, py, turned, fallen = weight, weight, weight, weight, weight
@@ -48,9 +50,9 @@ def fall_in_drag(
         fall_x, fall_y = choose(mass > 0.0, gx, 0.0), choose(mass > 0.0, gy, 0.0)
         x, y = take_vectors(motion.position, rows, at)
         vx, vy = take_vectors(motion.linear, rows, at)
-        left = span
+        left, changes = span, everywhere(1.0)
         while left > 0.0:
-            rate, steps = _slowed(vx, vy, linear, 2.0 * quadratic), 1
+            rate, steps = changes * _slowed(vx, vy, linear, 2.0 * quadratic), 1
             while steps < _MOST and mask_bits(rate * left > _FOLLOWED * steps) != 0:
                 steps *= 2
             h, brakes = left / steps, steps > _EQUAL
@@ -64,7 +66,7 @@ def fall_in_drag(
                     taken = taken - part * (fx * ux + fy * uy)
                     px, py = px + part * fx, py + part * fy
                     turned = turned + part * (at_x * fy - at_y * fx)
-                    ax, ay = fall_x + fx, fall_y + fy
+                    ax, ay = changes * (fall_x + fx), changes * (fall_y + fy)
                     to_x, to_y = to_x + share * ux, to_y + share * uy
                     to_vx, to_vy = to_vx + share * ax, to_vy + share * ay
                     ahead = h if stage == 2 else 0.5 * h
@@ -74,6 +76,8 @@ def fall_in_drag(
                 mean_y = h * (y + 0.5 * to_y) - h * h / 12.0 * to_vy
                 fallen = fallen + mass * (mean_x * gy - mean_y * gx)
                 x, y, vx, vy = x + to_x, y + to_y, vx + to_vx, vy + to_vy
+            is_steady = to_vx * to_vx + to_vy * to_vy < _STEADY * (vx * vx + vy * vy)
+            changes = choose(is_steady, 0.0, changes)
             left = left - h if brakes else 0.0
         weight = weight + mass
         put_vectors(motion.position, rows, at, x, y)
