@@ -23,8 +23,9 @@ _FOLLOWED = 0.05
 _EQUAL, _MOST = 32, 2**50
 """Number of steps that are equally long: where there would be more, each goes by the speed, which decreases.
 Then the largest number that is reckoned with. A number is a power of two."""
-_STEADY = 2.0**-104
-"""Share of the square of a velocity below which that of its change is rounding: it is the terminal one."""
+_STEADY = 2.0**-92
+"""Share of the square of what gravity adds to a velocity below which that of its change is rounding: drag
+holds all of it, at the terminal velocity."""
 
 
 @always_inlined
@@ -76,7 +77,8 @@ def fall_in_drag(
                 mean_y = h * (y + 0.5 * to_y) - h * h / 12.0 * to_vy
                 fallen = fallen + mass * (mean_x * gy - mean_y * gx)
                 x, y, vx, vy = x + to_x, y + to_y, vx + to_vx, vy + to_vy
-            is_steady = to_vx * to_vx + to_vy * to_vy < _STEADY * (vx * vx + vy * vy)
+            falls = h * h * (fall_x * fall_x + fall_y * fall_y)
+            is_steady = to_vx * to_vx + to_vy * to_vy < _STEADY * falls
             changes = choose(is_steady, 0.0, changes)
             left = left - h if brakes else 0.0
         weight = weight + mass
