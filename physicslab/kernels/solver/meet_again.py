@@ -100,28 +100,52 @@ def _meeting(
 
 
 @inlined
-def _note_meetings(
-    near: Near, motion: Motion, shapes: Shapes, inverse: Inverse, h: float, end: float, outlines: bool
-) -> bool:
-    """Note when pairs of bodies that have met before meet again, and when each body first does so."""
-    manifolds, moments, noted, any_meets = near.manifolds, near.moments, near.noted, False
-    for i in range(len(moments)):
-        moments[i, NEXT] = math.inf
+def _forget_changed(near: Near, end: float, known: int) -> None:
+    """Forget when those pairs meet that have come, or of which a body has had an impact in the last round.
+
+    All are kept in the first ``known`` records. Those that cannot meet do so at infinity.
+    """
+    moments, noted = near.moments, near.noted
     for number in range(near.counts[SCALAR]):
         p = near.scalar[number]
-        manifold = manifolds[p]
+        manifold = near.manifolds[p]
         a, b = manifold.a, manifold.b
         since = max(moments[a, SINCE], moments[b, SINCE])
-        noted[2 * p, 0] = math.inf
         if since == -math.inf or manifold.count < 0 or manifold.wall > -1 or since >= end:
-            continue
-        t, at = _meeting(manifold, since, motion, shapes, near.rotations, h, end, outlines)
+            noted[2 * p, 0] = math.inf
+        elif p >= known or min(moments[a, NEXT], moments[b, NEXT]) == -math.inf:
+            noted[2 * p, 0] = math.nan
+    for i in range(len(moments)):
+        moments[i, NEXT] = math.inf
+
+
+@inlined
+def _note_meetings(
+    near: Near, motion: Motion, shapes: Shapes, inverse: Inverse, h: float, end: float, outlines: bool,
+    known: int,
+) -> bool:  # fmt: skip
+    """Note when pairs of bodies that have met before meet again, and when each body first does so.
+
+    It is known of those in the first ``known`` records, where no impact has changed their motion.
+    """
+    manifolds, moments, noted, any_meets = near.manifolds, near.moments, near.noted, False
+    _forget_changed(near, end, known)
+    for number in range(near.counts[SCALAR]):
+        p = near.scalar[number]
+        t = noted[2 * p, 0]
         if t == math.inf:
             continue
+        manifold = manifolds[p]
+        a, b = manifold.a, manifold.b
+        if math.isnan(t):
+            since = max(moments[a, SINCE], moments[b, SINCE])
+            t, at = _meeting(manifold, since, motion, shapes, near.rotations, h, end, outlines)
+            noted[2 * p, 0], noted[2 * p, 1], noted[2 * p, 2] = t, at.nx, at.ny
+            noted[2 * p + 1, 0], noted[2 * p + 1, 1] = at.arm_ax, at.arm_ay
+            noted[2 * p + 1, 2], noted[2 * p + 1, 3] = at.arm_bx, at.arm_by
+            if t == math.inf:
+                continue
         any_meets = True
-        noted[2 * p, 0], noted[2 * p, 1], noted[2 * p, 2] = t, at.nx, at.ny
-        noted[2 * p + 1, 0], noted[2 * p + 1, 1] = at.arm_ax, at.arm_ay
-        noted[2 * p + 1, 2], noted[2 * p + 1, 3] = at.arm_bx, at.arm_by
         for row in (a, b):
             if inverse.mass[row] > 0.0:
                 moments[row, NEXT] = min(moments[row, NEXT], t)
@@ -191,7 +215,7 @@ def meet_again(
     It ends after the last round, and ``ROUND`` is 0 then, or before the one to which pairs are to be listed
     again, since an impact has thrown a body out of its fat box.
     """
-    counts, moments, impacts = near.counts, near.moments, 0
+    counts, moments, impacts, known = near.counts, near.moments, 0, 0
     if counts[UNORDERED] != 0:
         sort_scalar(near.manifolds, near.scalar, counts[SCALAR], len(motion.angle))
         counts[UNORDERED] = 0
@@ -200,8 +224,9 @@ def meet_again(
         _list_near(near, motion, h, speculative_margin)
         rounds = counts[ROUND] - 1
         more = rounds < _ROUNDS and _note_meetings(
-            near, motion, shapes, inverse, h, window.end, rounds < _OUTLINES
+            near, motion, shapes, inverse, h, window.end, rounds < _OUTLINES, known
         )
+        known = counts[RECORDED] if rounds + 1 != _OUTLINES else 0
         if more:
             came = _bounce_first(
                 near, motion, materials, inverse, acting, log, rounds < _ELASTIC, window.start < 0.0
