@@ -2,6 +2,7 @@
 
 import dataclasses
 from collections.abc import Callable, Sequence
+from functools import partial
 from itertools import pairwise
 from pathlib import Path
 
@@ -86,34 +87,35 @@ def sizes(world: World) -> list[int]:
 type Add = Callable[[World], Sequence[int]]
 
 
+def same_alone(make: Add, far: Callable[[World], object], steps: int) -> tuple[World, World, bool]:
+    """Return a world of bodies on a floor, one of the same and what is far, and whether they move alike."""
+    worlds, moved = (World(), World()), list[NDArray[np.float64]]()
+    for world in worlds:
+        floor(world)
+        bodies = make(world)
+        if world is worlds[1]:
+            far(world)
+        world.run(steps=steps)
+        moved.append(motion(world, bodies))
+    return *worlds, np.array_equal(moved[0], moved[1])
+
+
 @pytest.mark.parametrize(
     "far", [crowd, lambda world: [disc(world, FAR, 3.0)], lambda world: pendulum(world, FAR)]
 )
 def test_the_bits_of_an_island_are_those_that_it_has_alone(far: Add) -> None:
-    alone, beside = World(), World()
-    for world in (alone, beside):
-        floor(world)
-    own, same = few(alone), few(beside)
-    far(beside)
-    alone.run(steps=90)
-    beside.run(steps=90)
+    alone, beside, same = same_alone(few, far, 90)
     assert len(sizes(beside)) == 2
     assert sizes(alone) == []
-    assert np.array_equal(motion(alone, own), motion(beside, same))
+    assert same
     assert alone.stepper is not None
     assert beside.islands.members[0].world.stepper_for(0.01).name == alone.stepper.name == "rigid"
 
 
 def test_what_touches_nothing_has_the_bits_of_a_run_of_its_own_beside_a_floor() -> None:
-    alone, beside = World(), World()
-    for world in (alone, beside):
-        floor(world)
-    own, same = pendulum(alone, FAR), pendulum(beside, FAR)
-    crowd(beside)
-    alone.run(steps=90)
-    beside.run(steps=90)
+    _, beside, same = same_alone(lambda world: pendulum(world, FAR), crowd, 90)
     assert sizes(beside)
-    assert np.array_equal(motion(alone, own), motion(beside, same))
+    assert same
 
 
 def test_single_steps_have_the_bits_of_a_run() -> None:
@@ -585,14 +587,7 @@ def test_random_scenes_have_the_bits_that_they_have_alone(
     far: Callable[[World], object], pytestconfig: pytest.Config
 ) -> None:
     for seed in range(round(200 * pytestconfig.getoption("effort"))):
-        alone, beside = World(), World()
-        for world in (alone, beside):
-            floor(world)
-        own, same = random_scene(alone, seed), random_scene(beside, seed)
-        far(beside)
-        alone.run(steps=150)
-        beside.run(steps=150)
-        assert np.array_equal(motion(alone, own), motion(beside, same)), seed
+        assert same_alone(partial(random_scene, seed=seed), far, 150)[2], seed
 
 
 def read_contacts(world: World) -> bool:

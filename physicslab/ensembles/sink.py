@@ -243,11 +243,5 @@ def _read(path: Path) -> dict[str, NDArray[Any]] | None:
     try:
         with open(path, "rb") as file, np.load(file, allow_pickle=False) as kept:
             return {name: kept[name] for name in ("keys", "done", "values", "wall_s", "failures")}
-    except (
-        OSError,
-        ValueError,
-        KeyError,
-        EOFError,
-        zipfile.BadZipFile,
-    ):  # the last where a crash has torn it
+    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):  # the last: torn by a crash
         return None
