@@ -5,6 +5,7 @@ import pytest
 from desk import SETTLED, Desk, click, click_at, empty_world, point, sized, tap
 
 from physicslab.components import Mass, Shape, Transform, Velocity
+from physicslab.ecs.fields import InvalidValue
 from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import load_scene
 from physicslab.languages.language import language
@@ -23,6 +24,23 @@ def german() -> Desk:
     desk.frames(60)
     tap(desk, "space")
     return desk
+
+
+@pytest.mark.parametrize(
+    ("value", "said"),
+    [
+        (0.0, "erlaubt ist eine endliche Zahl > 0 kg"),
+        (1e-320, "erlaubt ist eine endliche Zahl > 0 kg, mindestens 1e-300"),
+        ("3 m/s", "erlaubt ist eine endliche Zahl > 0 kg: '3 m/s' ist in m/s, dies in kg"),
+        ("5 deg", "erlaubt ist eine endliche Zahl > 0 kg: '5 deg' ist ohne Einheit, dies in kg"),
+        ("1e400", "erlaubt ist eine endliche Zahl > 0 kg: '1e400' ist nicht endlich"),
+        ("", "erlaubt ist eine endliche Zahl > 0 kg: hier fehlt eine Zahl"),
+    ],
+)
+def test_a_refused_number_is_refused_in_the_language(value: float | str, said: str) -> None:
+    with pytest.raises(InvalidValue) as refused:
+        Mass(value)
+    assert language("de").reword(f"must be {refused.value.allowed}") == said
 
 
 def test_what_is_opened_is_named_in_the_language(german: Desk) -> None:

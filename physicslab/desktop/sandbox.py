@@ -125,7 +125,6 @@ class Sandbox:
         self.history = history or History(world)
         window.follow_history(self.history)
         window.sketch.cancel()
-        window.overlays.forget()
         window.sparks.clear()
         window.dust.clear()
         window.squash.clear()
@@ -146,6 +145,7 @@ class Sandbox:
             window.tool = SELECT.name  # a stray click is to make nothing in an experiment
         window.error, window.scenes.next_world = "", None
         window.framing.go_home(world)
+        window.overlays.begin(world, window.camera)
         window.scenes.saved = Changes()
         window.trust.follow(world, window.now)  # before it is stepped: digits count from here
 

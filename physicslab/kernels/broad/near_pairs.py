@@ -9,7 +9,16 @@ import math
 
 import numpy as np
 
-from physicslab.kernels import Numbers, Rows, Vectors, allocating, allocating_kernel, inlined, kernel
+from physicslab.kernels import (
+    Numbers,
+    Rows,
+    Vectors,
+    allocating,
+    allocating_kernel,
+    always_inlined,
+    inlined,
+    kernel,
+)
 from physicslab.kernels.broad.fat_boxes import CORNERWISE
 from physicslab.kernels.geometry.contact import ACTIVATION_RATIO
 from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple, named_shapes
@@ -209,6 +218,35 @@ def make_blank(manifolds: Manifolds, points: Points, p: int) -> None:
         point.approach_speed = point.impact_normal = point.impact_tangent = point.bend = 0.0
 
 
+@always_inlined
+def comes_near(
+    proximity: Couples, activation_distance: Numbers, k: int, places: Numbers, velocities: Numbers, h: float,
+    speculative_margin: float,
+) -> bool:  # fmt: skip
+    """Whether proximity pair k may touch within ``h`` seconds from now or before.
+
+    ``places`` and ``velocities`` (2 rows,) are flat, and indices unsigned: else each is multiplied by a
+    stride and tested for its sign.
+    """
+    xa, xb = 2 * np.uint64(proximity[2 * k]), 2 * np.uint64(proximity[2 * k + 1])
+    ya, yb = xa + np.uint64(1), xb + np.uint64(1)
+    dx, dy = places[xb] - places[xa], places[yb] - places[ya]
+    moved = abs(velocities[xb] - velocities[xa]) + abs(velocities[yb] - velocities[ya])
+    far = activation_distance[k] + CORNERWISE * (moved * h + speculative_margin)
+    return bool(not (dx * dx + dy * dy > far * far))
+
+
+@inlined
+def give_record(
+    proximity: Couples, k: int, manifolds: Manifolds, points: Points, p: int, entities: Rows
+) -> None:
+    """Make record ``p`` that of proximity pair k, which has had no points yet."""
+    manifold, a, b = manifolds[p], np.int64(proximity[2 * k]), np.int64(proximity[2 * k + 1])
+    make_blank(manifolds, points, p)
+    manifold.a, manifold.b, manifold.wall = a, b, -1
+    manifold.entity_a, manifold.entity_b = entities[a], entities[b]
+
+
 @allocating
 def activate(
     proximity: Couples, activation_distance: Numbers, proximity_count: int, manifolds: Manifolds,
@@ -225,37 +263,26 @@ def activate(
     if proximity_count == 0:
         return proximity_count, count, scalar_count
     came = 0
-    # Flat, with unsigned indices: else every index is multiplied by a stride and tested for its sign.
     places, velocities = position.reshape(position.size), linear.reshape(linear.size)
     for k in range(proximity_count):
-        xa, xb = 2 * np.uint64(proximity[2 * k]), 2 * np.uint64(proximity[2 * k + 1])
-        ya, yb = xa + np.uint64(1), xb + np.uint64(1)
-        dx, dy = places[xb] - places[xa], places[yb] - places[ya]
-        moved = abs(velocities[xb] - velocities[xa]) + abs(velocities[yb] - velocities[ya])
-        far = activation_distance[k] + CORNERWISE * (moved * h + speculative_margin)
         near[came] = k  # kept by counting: which pair comes near cannot be predicted
-        came += not (dx * dx + dy * dy > far * far)
+        came += comes_near(proximity, activation_distance, k, places, velocities, h, speculative_margin)
     if came == 0:
         return proximity_count, count, scalar_count
     for k in range(came):
-        p = count + k
-        manifold = manifolds[p]
-        a, b = np.int64(proximity[2 * near[k]]), np.int64(proximity[2 * near[k] + 1])
-        make_blank(manifolds, points, p)
-        manifold.a, manifold.b, manifold.wall = a, b, -1
-        manifold.entity_a, manifold.entity_b = entities[a], entities[b]
-        scalar[scalar_count + k] = p
+        give_record(proximity, near[k], manifolds, points, count + k, entities)
+        scalar[scalar_count + k] = count + k
     for k in range(came - 1, -1, -1):
         proximity_count, to = proximity_count - 1, near[k]
         proximity[2 * to] = proximity[2 * proximity_count]
         proximity[2 * to + 1] = proximity[2 * proximity_count + 1]
         activation_distance[to] = activation_distance[proximity_count]
-    _merge_tail(manifolds, scalar, scalar_count, scalar_count + came, len(entities))
+    merge_tail(manifolds, scalar, scalar_count, scalar_count + came, len(entities))
     return proximity_count, count + came, scalar_count + came
 
 
 @inlined
-def _rank(manifolds: Manifolds, p: int, rows: int) -> int:
+def rank_of(manifolds: Manifolds, p: int, rows: int) -> int:
     """Return a number that is larger for what comes later in the order of rows and walls."""
     manifold = manifolds[p]
     wall = manifold.wall if manifold.wall > -2 else 2 - manifold.wall
@@ -263,13 +290,13 @@ def _rank(manifolds: Manifolds, p: int, rows: int) -> int:
 
 
 @allocating
-def _merge_tail(manifolds: Manifolds, scalar: Rows, start: int, count: int, rows: int) -> None:
+def merge_tail(manifolds: Manifolds, scalar: Rows, start: int, count: int, rows: int) -> None:
     """Put the numbers from ``start`` on in their places among those before, which are in order."""
     many = count - start
     tail, ranks = np.empty(many, np.int64), np.empty(many, np.int64)
     for k in range(many):
         tail[k] = scalar[start + k]
-        ranks[k] = _rank(manifolds, tail[k], rows)
+        ranks[k] = rank_of(manifolds, tail[k], rows)
     gap = many // 2  # Shell's sort: a few as a rule, all pairs of a world at its beginning
     while gap > 0:
         for k in range(gap, many):
@@ -281,7 +308,7 @@ def _merge_tail(manifolds: Manifolds, scalar: Rows, start: int, count: int, rows
         gap = 1 if gap == 2 else (gap * 5) // 11
     before, to = start - 1, count - 1
     for k in range(many - 1, -1, -1):
-        while before >= 0 and _rank(manifolds, scalar[before], rows) > ranks[k]:
+        while before >= 0 and rank_of(manifolds, scalar[before], rows) > ranks[k]:
             scalar[to] = scalar[before]
             to, before = to - 1, before - 1
         scalar[to] = tail[k]
@@ -292,7 +319,9 @@ def _merge_tail(manifolds: Manifolds, scalar: Rows, start: int, count: int, rows
 def sort_scalar(manifolds: Manifolds, scalar: Rows, count: int, rows: int) -> None:
     """Sort scalar pairs by rows and walls; as a rule all but the last few are in order."""
     start = min(count, 1)
-    while start < count and _rank(manifolds, scalar[start - 1], rows) < _rank(manifolds, scalar[start], rows):
+    while start < count and rank_of(manifolds, scalar[start - 1], rows) < rank_of(
+        manifolds, scalar[start], rows
+    ):
         start += 1
     if start < count:
-        _merge_tail(manifolds, scalar, start, count, rows)
+        merge_tail(manifolds, scalar, start, count, rows)

@@ -2,7 +2,8 @@
 
 The sweeps of a substep go by the velocities from before its impacts. A body that an impact throws back, or
 spins up, may come to another wall within the same substep, or to the same one with its next corner. So pairs
-of such bodies are looked at again, the earliest meeting of each body first, until none meets any more.
+of such bodies are looked at again, the earliest meeting of each body first, until none meets any more. All of
+them are once; then, round by round, those of the bodies that the last round has changed.
 
 An impact may throw a body out of its fat box, towards bodies that are not listed as near: pairs are then
 listed again first, so that which ones meet goes by places and velocities alone.
@@ -11,17 +12,26 @@ listed again first, so that which ones meet goes by places and velocities alone.
 import math
 from typing import NamedTuple
 
-from physicslab.kernels import Vectors, inlined
+import numpy as np
+
+from physicslab.kernels import Rows, Vectors, allocating, inlined
 from physicslab.kernels.arguments import Acting, Inverse, Log, Materials, Motion, Near
-from physicslab.kernels.broad.fat_boxes import all_inside
-from physicslab.kernels.broad.near_pairs import activate, sort_scalar
+from physicslab.kernels.broad.fat_boxes import all_inside, left
+from physicslab.kernels.broad.near_pairs import (
+    activate,
+    comes_near,
+    give_record,
+    merge_tail,
+    rank_of,
+    sort_scalar,
+)
 from physicslab.kernels.constraint.pair import ContactFrame, point_velocity, velocity_of
 from physicslab.kernels.geometry.contact import list_touching
 from physicslab.kernels.geometry.outline import Way, kept_outline, on_segment
 from physicslab.kernels.geometry.pair import sweep_any
 from physicslab.kernels.geometry.shapes import Shapes
-from physicslab.kernels.geometry.sweep import is_swift
-from physicslab.kernels.near_counts import ACTIVE, LOGGED, PROXIMITY, RECORDED, ROUND, SCALAR, UNORDERED
+from physicslab.kernels.geometry.sweep import MISS, is_swift, sweep_circle_circle
+from physicslab.kernels.near_counts import LOGGED, PROXIMITY, RECORDED, ROUND, SCALAR, UNORDERED
 from physicslab.kernels.records import Manifold
 from physicslab.kernels.solver.impact import ImpactWindow, resolve_at
 
@@ -32,6 +42,10 @@ restitution counts: what is left then is caught between walls. A body of 1 kg th
 against a wall bounces 270 times in a substep."""
 _TURNS = 1e-9
 """Turn in a substep [rad] below which no corner rolls."""
+_ROUNDING = 1.0 + 1e-9
+"""By how many times as large circles no outline passes for rounding."""
+_RECORDED = 0xFFFFFFFF
+"""In place of the second row of a proximity pair: it has the record whose number is in place of the first."""
 SINCE, NEXT = range(2)
 """The columns of ``Near.moments``."""
 
@@ -85,6 +99,12 @@ def _meeting(
     outline_b = on_segment(kept_outline(b, motion.angle, shapes, rotations), manifold.wall)
     if not is_swift(way, 0.0, outline_a, outline_b):
         return Meeting(math.inf, ContactFrame(0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
+    x, y = way.dx + since / h * way.ux, way.dy + since / h * way.uy
+    reach = _ROUNDING * (shapes.reach[a] + shapes.reach[b])
+    if x * x + y * y > reach * reach and sweep_circle_circle(x, y, way.ux, way.uy, reach) == MISS:
+        return Meeting(
+            math.inf, ContactFrame(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        )  # circles around them do not meet
     turn_a, turn_b = h * angular[a], h * angular[b]
     rolls = abs(turn_a) + abs(turn_b) > _TURNS
     share, place, found = sweep_any(
@@ -100,56 +120,31 @@ def _meeting(
 
 
 @inlined
-def _forget_changed(near: Near, end: float, known: int) -> None:
-    """Forget when those pairs meet that have come, or of which a body has had an impact in the last round.
-
-    All are kept in the first ``known`` records. Those that cannot meet do so at infinity.
-    """
-    moments, noted = near.moments, near.noted
-    for number in range(near.counts[SCALAR]):
-        p = near.scalar[number]
-        manifold = near.manifolds[p]
-        a, b = manifold.a, manifold.b
-        since = max(moments[a, SINCE], moments[b, SINCE])
-        if since == -math.inf or manifold.count < 0 or manifold.wall > -1 or since >= end:
-            noted[2 * p, 0] = math.inf
-        elif p >= known or min(moments[a, NEXT], moments[b, NEXT]) == -math.inf:
-            noted[2 * p, 0] = math.nan
-    for i in range(len(moments)):
-        moments[i, NEXT] = math.inf
+def _note_meeting(
+    near: Near, p: int, motion: Motion, shapes: Shapes, h: float, end: float, outlines: bool
+) -> bool:
+    """Note when a pair meets of which a body has met another before; return whether it does."""
+    manifold, moments, noted = near.manifolds[p], near.moments, near.noted
+    since = max(moments[manifold.a, SINCE], moments[manifold.b, SINCE])
+    if since == -math.inf or manifold.count < 0 or manifold.wall > -1 or since >= end:
+        return False
+    t, at = _meeting(manifold, since, motion, shapes, near.rotations, h, end, outlines)
+    noted[2 * p, 0], noted[2 * p, 1], noted[2 * p, 2] = t, at.nx, at.ny
+    noted[2 * p + 1, 0], noted[2 * p + 1, 1] = at.arm_ax, at.arm_ay
+    noted[2 * p + 1, 2], noted[2 * p + 1, 3] = at.arm_bx, at.arm_by
+    return t < math.inf
 
 
 @inlined
-def _note_meetings(
-    near: Near, motion: Motion, shapes: Shapes, inverse: Inverse, h: float, end: float, outlines: bool,
-    known: int,
-) -> bool:  # fmt: skip
-    """Note when pairs of bodies that have met before meet again, and when each body first does so.
-
-    It is known of those in the first ``known`` records, where no impact has changed their motion.
-    """
-    manifolds, moments, noted, any_meets = near.manifolds, near.moments, near.noted, False
-    _forget_changed(near, end, known)
+def _look_at_all(near: Near, motion: Motion, shapes: Shapes, h: float, end: float, outlines: bool) -> int:
+    """Write which pairs meet to ``near.touching``, in order; return how many."""
+    found = 0
     for number in range(near.counts[SCALAR]):
         p = near.scalar[number]
-        t = noted[2 * p, 0]
-        if t == math.inf:
-            continue
-        manifold = manifolds[p]
-        a, b = manifold.a, manifold.b
-        if math.isnan(t):
-            since = max(moments[a, SINCE], moments[b, SINCE])
-            t, at = _meeting(manifold, since, motion, shapes, near.rotations, h, end, outlines)
-            noted[2 * p, 0], noted[2 * p, 1], noted[2 * p, 2] = t, at.nx, at.ny
-            noted[2 * p + 1, 0], noted[2 * p + 1, 1] = at.arm_ax, at.arm_ay
-            noted[2 * p + 1, 2], noted[2 * p + 1, 3] = at.arm_bx, at.arm_by
-            if t == math.inf:
-                continue
-        any_meets = True
-        for row in (a, b):
-            if inverse.mass[row] > 0.0:
-                moments[row, NEXT] = min(moments[row, NEXT], t)
-    return any_meets
+        if _note_meeting(near, p, motion, shapes, h, end, outlines):
+            near.touching[found] = p
+            found += 1
+    return found
 
 
 @inlined
@@ -159,22 +154,62 @@ def _list_near(near: Near, motion: Motion, h: float, speculative_margin: float) 
     counts[PROXIMITY], counts[RECORDED], counts[SCALAR] = activate(
         near.proximity, near.activation_distance, counts[PROXIMITY], near.manifolds, near.points,
         counts[RECORDED], near.scalar, counts[SCALAR], near.entities, motion.position, motion.linear, h,
-        speculative_margin, near.touching[counts[ACTIVE] :],
+        speculative_margin, near.touching,
     )  # fmt: skip
 
 
 @inlined
+def _link(near: Near, inverse: Inverse, first: Rows, links: Rows) -> None:
+    """Fill ``links`` with the pairs of each body that can be moved: those of row i begin at ``first[i]``.
+
+    A pair without a record is a negative number: -1 less its place among these.
+    """
+    counts, manifolds, proximity = near.counts, near.manifolds, near.proximity
+    for fills in range(2):  # how many each has, and then which
+        for number in range(counts[SCALAR]):
+            p = near.scalar[number]
+            manifold = manifolds[p]
+            if manifold.wall < 0 and manifold.count >= 0:
+                for row in (manifold.a, manifold.b):
+                    if inverse.mass[row] > 0.0:
+                        first[row] += 1 - 2 * fills
+                        if fills == 1:
+                            links[first[row]] = p
+        for k in range(counts[PROXIMITY]):
+            for row in (np.int64(proximity[2 * k]), np.int64(proximity[2 * k + 1])):
+                if inverse.mass[row] > 0.0:
+                    first[row] += 1 - 2 * fills
+                    if fills == 1:
+                        links[first[row]] = -1 - k
+        if fills == 0:
+            for i in range(1, len(first)):
+                first[i] += first[i - 1]
+
+
+@inlined
 def _bounce_first(
-    near: Near, motion: Motion, materials: Materials, inverse: Inverse, acting: Acting, log: Log,
-    elastic: bool, forced: bool,
-) -> int:  # fmt: skip
-    """Bounce those noted pairs that are the first to meet for both bodies; return how many impacts it was."""
-    moments, noted, impacts = near.moments, near.noted, 0
-    for number in range(near.counts[SCALAR]):
-        p = near.scalar[number]
+    near: Near, found: int, motion: Motion, materials: Materials, inverse: Inverse, acting: Acting, log: Log,
+    elastic: bool, forced: bool, changed: Rows,
+) -> tuple[int, int]:  # fmt: skip
+    """Bounce those of the ``found`` pairs that are the first to meet for both bodies.
+
+    Returns how many impacts it was, and how many bodies they have ``changed``.
+    """
+    moments, noted, impacts, many = near.moments, near.noted, 0, 0
+    for n in range(found):
+        manifold = near.manifolds[near.touching[n]]
+        moments[manifold.a, NEXT] = moments[manifold.b, NEXT] = math.inf
+    for n in range(found):
+        p = near.touching[n]
+        manifold = near.manifolds[p]
+        for row in (manifold.a, manifold.b):
+            if inverse.mass[row] > 0.0:
+                moments[row, NEXT] = min(moments[row, NEXT], noted[2 * p, 0])
+    for n in range(found):
+        p = near.touching[n]
         manifold, t = near.manifolds[p], noted[2 * p, 0]
         a, b = manifold.a, manifold.b
-        if t == math.inf or t > min(moments[a, NEXT], moments[b, NEXT]):
+        if t > min(moments[a, NEXT], moments[b, NEXT]):
             continue
         at = ContactFrame(
             noted[2 * p, 1], noted[2 * p, 2], noted[2 * p + 1, 0], noted[2 * p + 1, 1],
@@ -191,7 +226,121 @@ def _bounce_first(
         for row in (a, b):
             if inverse.mass[row] > 0.0:
                 moments[row, SINCE], moments[row, NEXT] = t, -math.inf  # no second one in this round
-    return impacts
+                changed[many] = row
+                many += 1
+    return impacts, many
+
+
+@inlined
+def _drop_changed(near: Near, found: int) -> int:
+    """Drop those of the ``found`` pairs of which a body this round has changed; return how many stay."""
+    kept = 0
+    for n in range(found):
+        p = near.touching[n]
+        manifold = near.manifolds[p]
+        if min(near.moments[manifold.a, NEXT], near.moments[manifold.b, NEXT]) > -math.inf:
+            near.touching[kept] = p
+            kept += 1
+    return kept
+
+
+@inlined
+def _record_of(near: Near, k: int, motion: Motion, h: float, speculative_margin: float) -> int:
+    """Return the record of proximity pair ``k``, which may get one now: -1 if not.
+
+    Where it has one, that stands in its place, until :func:`_close_up` removes it from among the others.
+    """
+    counts, proximity, position, linear = near.counts, near.proximity, motion.position, motion.linear
+    if proximity[2 * k + 1] == _RECORDED:
+        return int(proximity[2 * k])
+    places, velocities = position.reshape(position.size), linear.reshape(linear.size)
+    if not comes_near(proximity, near.activation_distance, k, places, velocities, h, speculative_margin):
+        return -1
+    p: int = counts[RECORDED]
+    give_record(proximity, k, near.manifolds, near.points, p, near.entities)
+    proximity[2 * k], proximity[2 * k + 1] = p, _RECORDED
+    near.scalar[counts[SCALAR]] = p
+    counts[RECORDED], counts[SCALAR] = p + 1, counts[SCALAR] + 1
+    return p
+
+
+@inlined
+def _close_up(near: Near) -> None:
+    """Remove the proximity pairs that have got records."""
+    proximity, kept = near.proximity, 0
+    for k in range(near.counts[PROXIMITY]):
+        if proximity[2 * k + 1] != _RECORDED:
+            proximity[2 * kept], proximity[2 * kept + 1] = proximity[2 * k], proximity[2 * k + 1]
+            near.activation_distance[kept] = near.activation_distance[k]
+            kept += 1
+    near.counts[PROXIMITY] = kept
+
+
+@inlined
+def _put_in(near: Near, p: int, found: int) -> None:
+    """Put a pair in its place among the ``found`` ones, in the order of rows."""
+    rows, place = len(near.entities), found
+    rank = rank_of(near.manifolds, p, rows)
+    while place > 0 and rank_of(near.manifolds, near.touching[place - 1], rows) > rank:
+        near.touching[place] = near.touching[place - 1]
+        place -= 1
+    near.touching[place] = p
+
+
+@allocating
+def _bounce_in_rounds(
+    near: Near, found: int, motion: Motion, shapes: Shapes, materials: Materials, inverse: Inverse,
+    acting: Acting, fat: Vectors, log: Log, h: float, window: ImpactWindow, speculative_margin: float,
+) -> tuple[int, bool]:  # fmt: skip
+    """Bounce the ``found`` pairs and those that meet after them, the first of each body in each round.
+
+    After a round only pairs of bodies that it has changed are looked at. Returns how many impacts there were,
+    and whether it ended because a body has left its fat box.
+    """
+    counts, moments, impacts, left_box = near.counts, near.moments, 0, False
+    rows, recorded, listed = len(motion.angle), counts[RECORDED], counts[SCALAR]
+    first = np.zeros(rows + 1, np.int64)
+    links = np.empty(2 * (counts[SCALAR] + counts[PROXIMITY]), np.int64)
+    changed = np.empty(rows, np.int64)
+    _link(near, inverse, first, links)
+    for i in range(rows):
+        moments[i, NEXT] = math.inf
+    while found > 0:
+        rounds = counts[ROUND] - 1
+        came, many = _bounce_first(
+            near, found, motion, materials, inverse, acting, log, rounds < _ELASTIC, window.start < 0.0,
+            changed,
+        )  # fmt: skip
+        impacts += came
+        counts[LOGGED] += came if len(log.impacts) > 0 else 0
+        rounds += 1
+        counts[ROUND] = rounds + 1
+        found = _drop_changed(near, found)
+        for n in range(many):
+            left_box |= fat.shape[1] > 0 and left(changed[n], motion, shapes, fat, h, 0.0, speculative_margin)
+        if left_box or rounds == _ROUNDS:
+            break
+        for n in range(many):
+            row = changed[n]
+            for link in range(first[row], first[row + 1]):
+                p = links[link]
+                if p < 0:
+                    p = _record_of(near, -1 - p, motion, h, speculative_margin)
+                if p < 0 or (row == near.manifolds[p].b and moments[near.manifolds[p].a, NEXT] == -math.inf):
+                    continue  # the other body is changed, too
+                if _note_meeting(near, p, motion, shapes, h, window.end, rounds < _OUTLINES):
+                    _put_in(near, p, found)
+                    found += 1
+        for n in range(many):
+            moments[changed[n], NEXT] = math.inf
+        if rounds == _OUTLINES:
+            merge_tail(near.manifolds, near.scalar, listed, counts[SCALAR], rows)
+            listed = counts[SCALAR]
+            found = _look_at_all(near, motion, shapes, h, window.end, False)
+    merge_tail(near.manifolds, near.scalar, listed, counts[SCALAR], rows)
+    if counts[RECORDED] > recorded:
+        _close_up(near)
+    return impacts, left_box
 
 
 @inlined
@@ -215,31 +364,23 @@ def meet_again(
     It ends after the last round, and ``ROUND`` is 0 then, or before the one to which pairs are to be listed
     again, since an impact has thrown a body out of its fat box.
     """
-    counts, moments, impacts, known = near.counts, near.moments, 0, 0
+    counts, moments, impacts, goes_on = near.counts, near.moments, 0, False
     if counts[UNORDERED] != 0:
         sort_scalar(near.manifolds, near.scalar, counts[SCALAR], len(motion.angle))
         counts[UNORDERED] = 0
-    list_touching(near, inverse)
-    while counts[ROUND] > 0:
-        _list_near(near, motion, h, speculative_margin)
-        rounds = counts[ROUND] - 1
-        more = rounds < _ROUNDS and _note_meetings(
-            near, motion, shapes, inverse, h, window.end, rounds < _OUTLINES, known
+    _list_near(near, motion, h, speculative_margin)
+    rounds, found = counts[ROUND] - 1, 0
+    if rounds < _ROUNDS:
+        found = _look_at_all(near, motion, shapes, h, window.end, rounds < _OUTLINES)
+    if found > 0:
+        impacts, goes_on = _bounce_in_rounds(
+            near, found, motion, shapes, materials, inverse, acting, fat, log, h, window, speculative_margin
         )
-        known = counts[RECORDED] if rounds + 1 != _OUTLINES else 0
-        if more:
-            came = _bounce_first(
-                near, motion, materials, inverse, acting, log, rounds < _ELASTIC, window.start < 0.0
-            )
-            impacts += came
-            counts[LOGGED] += came if len(log.impacts) > 0 else 0
-            counts[ROUND] += 1
-            if is_outdated(near, motion, shapes, fat, h, speculative_margin):
-                break
-        else:
-            if rounds > 0:
-                _leave_to_solver(near)
-            counts[ROUND] = 0
-            for i in range(len(moments)):
-                moments[i, SINCE] = -math.inf
+    if not goes_on:
+        if counts[ROUND] > 1:
+            _leave_to_solver(near)
+        counts[ROUND] = 0
+        for i in range(len(moments)):
+            moments[i, SINCE] = -math.inf
+    list_touching(near, inverse)
     return impacts
