@@ -10,11 +10,12 @@ Examples
 """
 
 from importlib import import_module
-from importlib.metadata import version
-from typing import TYPE_CHECKING
 
 __version__: str
 """The version that is installed; asking where none is raises ``PackageNotFoundError``."""
+
+TYPE_CHECKING = False
+"""That of :mod:`typing`, which takes longer to import than all that a program needs at first."""
 
 if TYPE_CHECKING:
     from physicslab.diagnostics.description import describe
@@ -65,6 +66,8 @@ if not TYPE_CHECKING:  # type checkers know the names above, and which there are
         before Python has kept its bytecode, seconds. The window must not wait for that.
         """
         if name == "__version__":
+            from importlib.metadata import version
+
             return version(__name__)
         if name not in _HOMES:
             if name[:1] == "_":

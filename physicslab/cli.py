@@ -44,14 +44,14 @@ def main(argv: Sequence[str] | None = None) -> int:
         return status
     except SystemExit as done:  # argparse, after --help
         return done.code if isinstance(done.code, int) else 0
+    except KeyboardInterrupt:  # before refusals: a package whose import it ended cannot be imported again
+        return _complain("interrupted", INTERRUPTED)
     except CommandError as error:
         return _complain(str(error), error.status)
     except _refusals() as error:
         return _complain(str(error), USAGE)
     except ImportError as error:  # a package that is not there, or a setting with which none of this works
         return _complain(str(error), FAILED)
-    except KeyboardInterrupt:
-        return _complain("interrupted", INTERRUPTED)
     except BrokenPipeError:
         _let_go_of_stdout()
         return _PIPE_CLOSED

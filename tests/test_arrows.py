@@ -16,6 +16,7 @@ from physicslab.diagnostics.free_body import applied_forces
 from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import load_scene
 from physicslab.prefabs import box, circle
+from physicslab.state import contents
 from physicslab.theme import DARK, Colour
 from physicslab.view.canvas.camera import Camera, Drawing
 from physicslab.view.overlay.arrows import (
@@ -91,6 +92,17 @@ def test_a_zoom_leaves_the_scale_as_it_was() -> None:
     assert desk.window.overlays.velocity.per_metre == before
     shaft = lines_in(canvas, DARK.velocity)[0]
     assert shaft["end"][0, 0] - shaft["start"][0, 0] == pytest.approx(2.0 / before * 50.0)
+
+
+def test_arrows_that_a_scene_shows_are_scaled_for_it() -> None:
+    """They had the scale of the scene before, and were less than a pixel long where much is seen."""
+    world = empty_world(gravity=(0, 0))
+    circle(world, (0, 0), velocity=(2.0, 0.0))
+    world.view, world.desk = (-500.0, -500.0, 500.0, 500.0), contents.Desk("explore", frozenset({"arrows"}))
+    desk, _ = shown(empty_world())
+    desk.sandbox.show(world)
+    desk.frames(8)
+    assert 30.0 < 2.0 / desk.window.overlays.velocity.per_metre * desk.window.camera.scale < 150.0
 
 
 def test_scales_are_kept_on_request() -> None:

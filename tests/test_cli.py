@@ -392,6 +392,19 @@ def test_an_interrupted_run_ends_quietly(
     assert os.listdir(tmp_path) == []
 
 
+def test_an_interrupted_import_is_not_tried_again(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The refusals are a part of the package, and numpy cannot be imported again: it ended in a traceback."""
+
+    def interrupt(*_: object) -> int:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(cli, "_dispatch", interrupt)
+    monkeypatch.setattr(cli, "_refusals", lambda: pytest.fail("imported"))
+    assert complaint(capsys, "scenes", status=130) == "interrupted"
+
+
 def test_an_interrupt_that_comes_in_a_callback_is_not_forgotten(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -104,6 +104,17 @@ def test_shares_from_nothing_are_of_the_kinetic_energy_seen() -> None:
     assert audit.error < 1e-12 and audit.exchanged == pytest.approx(0.5 * 9.81**2)
 
 
+def test_what_a_driven_body_gives_is_energy_exchanged() -> None:
+    """It was 981 times what was exchanged, of which it was left out as what a hand gives."""
+    world = World(*standard_systems())
+    world.spawn(Transform(), Velocity((0.0, 0.01)), Shape("box", width=2.0, height=0.2))
+    world.spawn(Transform((0.0, 0.35)), Velocity(), Mass(10.0), Shape("box", width=0.5, height=0.5))
+    audit = Audit(world)
+    world.run(seconds=1.0)
+    audit.sample(world)
+    assert audit.exchanged == pytest.approx(0.981, rel=2e-3) and audit.change == pytest.approx(1.0, rel=2e-3)
+
+
 class Brake(System):
     """Takes a tenth of the velocity within every substep, and books nothing."""
 

@@ -433,7 +433,7 @@ REFUSED: tuple[tuple[Any, dict[str, Any], str], ...] = (
     ({M: [1]}, {"measure": "ball.x +"}, "is no number"),
     ({M: [1]}, {"measure": "max(ball.x"}, "'max(ball.x' is no number: a \")\" is missing"),
     ({M: [1]}, {"measure": "ball.x)"}, "'ball.x)' is no number: a \"(\" is missing"),
-    ({M: [1]}, {"measure": "ball.x + ball.vx"}, "m and m s^-1 cannot be added"),
+    ({M: [1]}, {"measure": "ball.x + ball.vx"}, "m and m/s cannot be added"),
     ({M: [1]}, {"measure": "__import__(ball.x)"}, "'__import__' is no function"),
     ({M: [1]}, {"measure": "at(1 kg, ball.x)"}, "the time is in kg; must be in s"),
     ({M: [1]}, {"measure": "1/0"}, "measure \"1/0\": '1/0' is not finite"),

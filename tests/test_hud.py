@@ -391,6 +391,15 @@ def test_a_step_that_takes_long_is_told_with_its_reason(monkeypatch: pytest.Monk
     assert "nahe Paare" in german and german.endswith("Abhilfe: weniger Körper oder Teilschritte")
 
 
+def test_a_step_in_which_kernels_are_compiled_is_not_called_slow(monkeypatch: pytest.MonkeyPatch) -> None:
+    desk, seconds = Desk(load_scene("drop")), itertools.count(0.0, 2.0)
+    monkeypatch.setattr("physicslab.desktop.sandbox.time.thread_time", lambda: next(seconds))
+    compiling = itertools.count(0.0, 2.0)
+    monkeypatch.setattr("physicslab.state.state.seconds_waited", lambda: next(compiling))
+    desk.frames(2)
+    assert not desk.window.notice
+
+
 @pytest.mark.parametrize("size", [(1, 1), (60, 40), (200, 100), (320, 200)])
 def test_a_tiny_window_does_no_harm(size: tuple[int, int]) -> None:
     crowded(size)

@@ -5,14 +5,19 @@ import pytest
 from desk import SETTLED, Desk, click, click_at, empty_world, point, sized, tap
 
 from physicslab.components import Mass, Shape, Transform, Velocity
+from physicslab.ecs.fields import InvalidValue
 from physicslab.ecs.vector import Vector2
-from physicslab.files.scene import load_scene
+from physicslab.files.checks import SceneError
+from physicslab.files.reader import read_scene
+from physicslab.files.scene import load_scene, parse_json
 from physicslab.languages.language import language
 from physicslab.languages.sentence import Sentence
 from physicslab.prefabs import box
 from physicslab.view.canvas.quantities import vector_quantity
 from physicslab.view.controls.file_actions import open_scene
 from physicslab.view.toolkit.axes import _ticks
+
+SCENE = '{"format": "physicslab-scene/1", "entities": [{%s}]}'
 
 
 @pytest.fixture
@@ -23,6 +28,43 @@ def german() -> Desk:
     desk.frames(60)
     tap(desk, "space")
     return desk
+
+
+@pytest.mark.parametrize(
+    ("value", "said"),
+    [
+        (0.0, "erlaubt: eine endliche Zahl > 0 kg"),
+        (1e-320, "erlaubt: eine endliche Zahl > 0 kg, mindestens 1e-300"),
+        ("3 m/s", "erlaubt: eine endliche Zahl > 0 kg: '3 m/s' ist in m/s, dies in kg"),
+        ("5 deg", "erlaubt: eine endliche Zahl > 0 kg: '5 deg' ist ohne Einheit, dies in kg"),
+        ("1e400", "erlaubt: eine endliche Zahl > 0 kg: '1e400' ist nicht endlich"),
+        ("", "erlaubt: eine endliche Zahl > 0 kg: hier fehlt eine Zahl"),
+    ],
+)
+def test_a_refused_number_is_refused_in_the_language(value: float | str, said: str) -> None:
+    with pytest.raises(InvalidValue) as refused:
+        Mass(value)
+    assert language("de").reword(f"must be {refused.value.allowed}") == said
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("[", "a.json: ist kein JSON: Expecting value in Zeile 1, Spalte 2"),
+        ('{"a": 1, "a": 2}', 'a.json: der Schlüssel "a" steht zweimal da; erlaubt ist einmal'),
+        ('{"format": 1}', 'a.json: format = 1: erlaubt: "physicslab-scene/1"'),
+        (SCENE % '"id": "a", "mass": {}', "unbekannt: component; möglich sind id"),
+        (
+            SCENE % '"id": "a", "Transform": {"position": [1e999, 0]}',
+            "zwei endliche Zahlen [x, y] m, je höchstens",
+        ),
+        (SCENE % '"id": " "', "erlaubt: ein Text, der nicht leer ist"),
+    ],
+)
+def test_a_refused_file_is_refused_in_the_language(text: str, said: str) -> None:
+    with pytest.raises(SceneError) as refused:
+        read_scene(parse_json(text, "a.json"), "a.json")
+    assert said in language("de").reword(str(refused.value))
 
 
 def test_what_is_opened_is_named_in_the_language(german: Desk) -> None:

@@ -287,7 +287,7 @@ def test_a_goal_is_reached_with_what_is_open(case: str, words: str) -> None:
             "within 10 s; must be a case in which the run comes to its end",
         ),
         ("answer: ball.speed", "answer: ball.x", "line 55: check speed: 'ball.x' is in m; this is in m/s"),
-        ("number: m/s", "curve: m", "line 55: check speed: 'ball.speed' is in m s^-1; this is in m"),
+        ("number: m/s", "curve: m", "line 55: check speed: 'ball.speed' is in m/s; this is in m"),
     ],
 )
 def test_what_the_engine_cannot_check_is_refused_with_its_block(part: str, instead: str, words: str) -> None:

@@ -74,6 +74,11 @@ def test_a_long_word_is_cut_with_few_looks_at_the_font() -> None:
     assert Counting.looks < 20 * len(lines)
 
 
+def test_banners_write_powers_of_ten_as_panels_do() -> None:
+    canvas, style = RecordingCanvas((640, 480)), TextStyle(14, (255, 255, 255))
+    assert broken("off by 2.8e-05 m", 600, canvas, style) == ["off by 2.8·10⁻⁵ m"]
+
+
 def test_a_spring_as_long_as_numbers_go_is_drawn() -> None:
     world = empty_world()
     bob = circle(world, (0, 0))

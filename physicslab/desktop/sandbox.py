@@ -125,7 +125,6 @@ class Sandbox:
         self.history = history or History(world)
         window.follow_history(self.history)
         window.sketch.cancel()
-        window.overlays.forget()
         window.sparks.clear()
         window.dust.clear()
         window.squash.clear()
@@ -146,6 +145,7 @@ class Sandbox:
             window.tool = SELECT.name  # a stray click is to make nothing in an experiment
         window.error, window.scenes.next_world = "", None
         window.framing.go_home(world)
+        window.overlays.begin(world, window.camera)
         window.scenes.saved = Changes()
         window.trust.follow(world, window.now)  # before it is stepped: digits count from here
 
@@ -255,7 +255,7 @@ class Sandbox:
         """
         window, dt = self.window, self.world.simulation.dt
         pace, microscope = window.pace, window.microscope
-        worked = time.thread_time()  # other programs' share of the processor is no reason of this scene's
+        worked = self._worked()  # other programs' share of the processor is no reason of this scene's
         deadline = self._clock() + pace.max_dt
         made, due = 0, pace.due(dt)
         if due and window.lesson is not None and window.lesson.waits:
@@ -284,11 +284,15 @@ class Sandbox:
             self.window.error = why
         else:
             pace.done(made, dt)
-            if made and (slow := self._watch.note(made, time.thread_time() - worked)):
+            if made and (slow := self._watch.note(made, self._worked() - worked)):
                 self.window.notify(Sentence("Slow: {what}", what=slow), 10.0, failed=True)
             if broken := self._watch.note_breaks():
                 self.window.notify(broken, 6.0)
         microscope.follow(pace, self.world.time)
+
+    def _worked(self) -> float:
+        """Return how long this process has computed without compiling [s], from some time on."""
+        return time.thread_time() - self.world.compile_s
 
     def _step(self, dt: float) -> None:
         """Make a step; in the past the one that was made there once."""

@@ -180,7 +180,7 @@ _LEAST_OF_EXCHANGED = 1e-12
 """Share of the energy exchanged below which an account is rounding."""
 _LEAST_OF_ENERGY = 1e-15
 """Share of the largest energy below which it is so, where hardly any is exchanged."""
-_OUTSIDE = ("edits", "hand", "numerical")
+_BRINGING = ("edits", "hand")
 """The accounts whose size is no measure of what is exchanged: a body that comes, goes or is taken into a hand
 brings or takes all of its potential energy, which depends on where that is zero."""
 
@@ -189,8 +189,9 @@ class Audit:
     """The accounts of a world from now on, sampled, with the largest change and the largest error seen.
 
     Shares are of the energy that is exchanged: the largest kinetic energy seen, the range of the potential
-    energy apart from what edits and a hand brought, or the largest account of another cause; whichever is
-    largest. None of these depends on where a potential is zero.
+    energy apart from what edits and a hand brought, or the largest account of another cause, work of driven
+    bodies included while nothing is held; whichever is largest. None of these depends on where a potential
+    is zero.
 
     Parameters
     ----------
@@ -214,24 +215,27 @@ class Audit:
     def __init__(self, world: World, *, whole: bool = False) -> None:
         found = measure_account(world)
         self._begin = None if whole else found
+        self._bringing = _BRINGING if whole and found.energy["hand"] else _BRINGING[:1]
         self._moved: dict[str, None] = {}
         self.largest_change = self.largest_error = self.exchanged = 0.0
         self._low, self._high = math.inf, -math.inf
-        self._take(found)
+        self._take(found, world)
         self.initial = self.account.start.energy
 
     def sample(self, world: World) -> None:
         """Read the accounts as they are now."""
-        self._take(measure_account(world))
+        self._take(measure_account(world), world)
 
     @np.errstate(all="ignore")
-    def _take(self, found: Accounts) -> None:
+    def _take(self, found: Accounts, world: World) -> None:
+        if held_in(world):
+            self._bringing = _BRINGING
         self.account = account = found if self._begin is None else found.after(self._begin)
         self.latest: Energy = account.parts
         booked = account.energy
-        inside = self.latest.stored - booked["edits"] - booked["hand"]
+        inside = self.latest.stored - sum(booked[name] for name in self._bringing)
         self._low, self._high = min(self._low, inside), max(self._high, inside)
-        sizes = (abs(value) for name, value in booked.items() if name not in _OUTSIDE)
+        sizes = (abs(value) for name, value in booked.items() if name not in (*self._bringing, "numerical"))
         self.exchanged = max(self.exchanged, self.latest.kinetic, self._high - self._low, *sizes)
         # numpy's maximum, unlike max, keeps NaN.
         self.largest_change = float(np.maximum(self.largest_change, abs(account.change)))

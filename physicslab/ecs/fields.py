@@ -150,7 +150,7 @@ class Field:
         if self.above > -math.inf:
             words += f" > {self.above:g}"
         if self.minimum > -math.inf and self.maximum < math.inf:
-            words += f" from {self.minimum:g} to {self.maximum:g}"
+            words = f"{words} from {self.minimum:g} to {self.maximum:g}"
         elif 0.0 < self.minimum < _TINY:
             words += " > 0"
         elif self.minimum > -math.inf:
@@ -172,20 +172,21 @@ class Field:
         texts and lists of points as their codes (:mod:`physicslab.ecs.interned`). Numbers may be texts with
         units, as ``"30 deg"``.
         """
-        convert, allowed, written = _CONVERSIONS[self.kind], "", value
+        convert, why, written = _CONVERSIONS[self.kind], "", value
         stored = convert(self, value)
         if stored is None and self.kind in MEASURED and is_written(value):
             try:
                 value = evaluate_as(self.kind, written, self.unit)
                 stored = convert(self, value)
             except InvalidText as error:
-                allowed = f": {error}"
+                why = f": {error}"
         if stored is None:
+            allowed = self.allowed + why
             if self.minimum < _TINY and isinstance(value, int | float) and 0.0 < value < self.minimum:
-                allowed = f", at least {self.minimum:g}"
+                allowed = ", ".join((allowed, f"at least {self.minimum:g}"))
             if self.kind == "entity" and isinstance(value, str):
-                allowed = f": world.entity({value!r}) is that of an id"
-            raise InvalidValue(self.owner, self.name, written, self.allowed + allowed)
+                allowed = f"{allowed}: world.entity({value!r}) is that of an id"
+            raise InvalidValue(self.owner, self.name, written, allowed)
         return stored
 
 

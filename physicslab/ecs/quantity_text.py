@@ -433,12 +433,13 @@ def _combined(kind: ast.operator, left: Quantity, right: Quantity, shown: str) -
 
 
 def in_words(dimension: Dimension) -> str:
-    """Return the powers of a unit in words: ``"m kg s^-2"``."""
+    """Return a unit in words: ``"kg m/s^2"``."""
     if dimension == _ONE:
         return "no unit"
-    parts = [
-        name if power == 1 else f"{name}^{power}"
-        for name, power in zip(("m", "kg", "s", "C"), dimension, strict=True)
-        if power
-    ]
-    return " ".join(parts)
+    length, mass, *others = dimension
+    powers = list(zip(("kg", "m", "s", "C"), (mass, length, *others), strict=True))
+    above, below = (
+        " ".join(f"{one}^{abs(power)}".removesuffix("^1") for one, power in powers if sign * power > 0)
+        for sign in (1, -1)
+    )
+    return f"{above or 1}/{f'({below})' if ' ' in below else below}" if below else above

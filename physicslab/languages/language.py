@@ -66,11 +66,13 @@ class Language:
 
         >>> language("de").decimal("rod = 0.25 m"), language("en").decimal("0.25 m")
         ('rod = 0,25 m', '0.25 m')
+        >>> language("de").decimal("(0, -3) kg m/s"), language("de").decimal("1, 2")
+        ('(0; -3) kg m/s', '1, 2')
         """
         if self._mark == ".":
             return text
         text, numbers = _POINT.subn(rf"\g<1>{self._mark}\g<2>", text)
-        return _BETWEEN.sub("; ", text) if numbers else text
+        return _BETWEEN.sub("; ", text) if numbers or text.startswith("(") else text
 
     def reword(self, text: str) -> str:
         """Return a finished text of the program in this language, also the numbers in it.

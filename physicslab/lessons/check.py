@@ -207,11 +207,8 @@ def _share(gap: float, of: float) -> float:
     return gap / abs(of) if of else (math.inf if gap else 0.0)
 
 
-_UNITS = {
-    "no unit": "", "m s^-1": "m/s", "m s^-2": "m/s^2", "m^2 kg s^-2": "J", "m kg s^-1": "N s",
-    "m^2 kg s^-1": "N m s",
-}  # fmt: skip
-"""Powers of units as a table has them."""
+_UNITS = {"no unit": "", "kg m^2/s^2": "J", "kg m/s": "N s", "kg m^2/s": "N m s"}
+"""Units as a table has them."""
 
 
 def si_unit(quantity: Quantity) -> str:

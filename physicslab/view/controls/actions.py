@@ -102,11 +102,6 @@ def toggle_scales(world: World, window: Window) -> None:
     window.notify("Arrows keep their scale" if kept else "The scale of arrows follows what is shown")
 
 
-def toggle_momenta(world: World, window: Window) -> None:
-    """Show or hide the momenta of bodies."""
-    window.overlays.toggle_momenta(world, window.camera)
-
-
 def zoom(window: Window, notches: float, at: tuple[float, float] | None = None) -> None:
     """Enlarge the picture by some notches of the wheel, around a place [px] or the cursor."""
     window.begin_glide()

@@ -9,6 +9,7 @@ from physicslab.theme import Colour
 from physicslab.view.canvas.camera import Drawing
 from physicslab.view.canvas.canvas import Canvas, Rect, TextStyle, overlap
 from physicslab.view.canvas.drawable_text import MAX_LETTERS, shortened
+from physicslab.view.canvas.quantities import with_powers
 
 
 def broken(words: str, width: int, canvas: Canvas, style: TextStyle) -> list[str]:
@@ -18,7 +19,7 @@ def broken(words: str, width: int, canvas: Canvas, style: TextStyle) -> list[str
     """
     lines: list[str] = []
     line = ""
-    for word in shortened(canvas.language.reword(words), MAX_LETTERS).split():
+    for word in shortened(with_powers(canvas.language.reword(words)), MAX_LETTERS).split():
         longer = f"{line} {word}" if line else word
         if canvas.text_size(proper(longer), style)[0] <= width:
             line = longer

@@ -1,7 +1,7 @@
 """Which overlays are shown, what is kept for them from frame to frame, and their legend."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -95,7 +95,10 @@ _MIN_LENGTH = 16.0
 """Its length is at least that [px]."""
 
 
-_GAUGES = {"arrows": ("velocity", "force"), "impulses": ("impact", "rest")}
+_GAUGES = {
+    "arrows": ("velocity", "force"), "impulses": ("impact", "rest"), "momenta": ("momentum",),
+    "selection": ("body_force",),
+}  # fmt: skip
 """The scales of each overlay."""
 
 
@@ -111,7 +114,7 @@ class Overlays:
     keeps_scales : bool
         Whether the scales of arrows stay as they are.
     reach : float
-        The wanted length of the strongest arrow [m], chosen when an overlay is turned on.
+        The wanted length of the strongest arrow [m], chosen when a world is shown or an overlay turned on.
     velocity, force, impact, rest : Gauge
         The scales: of velocities, forces, impulses of impacts, and impulses that hold bodies apart.
     body_force, momentum : Gauge
@@ -138,23 +141,19 @@ class Overlays:
         self.labels = Labels()
         self.covered: list[Rect] = []
 
-    def toggle(self, overlay: Literal["arrows", "impulses"], world: World, camera: Camera) -> None:
-        """Show or hide velocities, forces and contact normals, or the impulses at contacts."""
+    def toggle(self, overlay: Literal["arrows", "impulses", "momenta"], world: World, camera: Camera) -> None:
+        """Show or hide velocities, forces and contact normals, the impulses at contacts, or momenta."""
         is_on = not getattr(self, overlay)
         setattr(self, overlay, is_on)
-        if is_on and not self.keeps_scales:
-            for name in _GAUGES[overlay]:
-                setattr(self, name, Gauge(getattr(self, name).unit))
-            self._measure(world, camera)
+        if is_on:
+            self._scale(_GAUGES[overlay], world, camera)
         if overlay == "impulses":
             self.forget()
 
-    def toggle_momenta(self, world: World, camera: Camera) -> None:
-        """Show or hide momenta, as long as other arrows."""
-        self.momenta = not self.momenta
-        if self.momenta and not self.keeps_scales:
-            self.momentum = Gauge(self.momentum.unit)
-            self._measure(world, camera)
+    def begin(self, world: World, camera: Camera) -> None:
+        """Forget what belongs to the world that was shown before, and choose the scales for another."""
+        self.forget()
+        self._scale([name for names in _GAUGES.values() for name in names], world, camera)
 
     def toggle_scales(self) -> None:
         """Let the scales of all arrows stay as they are, or follow what is shown again."""
@@ -168,7 +167,12 @@ class Overlays:
         self.labels.clear()
         self.force_labels.clear()
 
-    def _measure(self, world: World, camera: Camera) -> None:
+    def _scale(self, names: Iterable[str], world: World, camera: Camera) -> None:
+        """Choose scales again, unless they are to stay as they are."""
+        if self.keeps_scales:
+            return
+        for name in names:
+            setattr(self, name, Gauge(getattr(self, name).unit))
         shape = world.table(Shape)
         rows = world.batch(Shape, Velocity).rows
         self.reach = _REACH * min(camera.size) / camera.scale

@@ -79,6 +79,11 @@ def _powers(low: float, high: float) -> Iterator[tuple[float, str]]:
         yield 10.0**power, f"{10.0**power:g}"
 
 
+def pad_plot(size: float) -> None:
+    """Leave room around plots: half of a number beside its axis, in which the last tick is written [px]."""
+    implot.get_style().plot_padding = imgui.ImVec2(1.1 * size, 0.3 * size)
+
+
 def plot_rect() -> tuple[int, int, int, int]:
     """Return the left, the top, the width and the height of the plot that is built, within its axes [px]."""
     corner, size = implot.get_plot_pos(), implot.get_plot_size()

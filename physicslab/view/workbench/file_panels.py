@@ -89,7 +89,9 @@ def build_film(ui: Ui, world: World, window: Window) -> None:
     filming, width, close = window.filming, _FILM * ui.size, window.closing_of("filming.choosing")
     naming = filming.naming
     with ui.floating("Film", window.framing.middle, close):
-        filming.what = ui.choice("Film of", filming.what, (ALL, BACK, FORWARD, FROM_NOW), width=width)
+        what = ui.choice("Film of", filming.what, (ALL, BACK, FORWARD, FROM_NOW), width=width)
+        if what != filming.what:
+            filming.what, naming.refused = what, ""
         ending = Path(naming.text).suffix.lower()
         now = next((kind for kind, other in _KINDS.items() if other == ending), next(iter(_KINDS)))
         kind = ui.choice("Film as", now, tuple(_KINDS), width=width)

@@ -11,7 +11,7 @@ from physicslab.components.quantities import KIND_OF_UNIT, QUANTITIES
 from physicslab.theme import Colour
 from physicslab.view.canvas.quantities import ROUNDING, written_unit
 from physicslab.view.controls import dashboard_actions
-from physicslab.view.toolkit.axes import finish_axes, plot_rect
+from physicslab.view.toolkit.axes import finish_axes, pad_plot, plot_rect
 from physicslab.view.toolkit.style import as_vector, packed
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.toolkit.windows import widget_label
@@ -49,7 +49,7 @@ class GraphPlot:
 
     def build(self, ui: Ui, world: World, window: Window, graph: GraphShown, height: float) -> float | None:
         """Build it; return the time under the cursor [s], ``None`` where the cursor is elsewhere."""
-        implot.get_style().plot_padding = ImVec2(0.3 * ui.size, 0.3 * ui.size)
+        pad_plot(ui.size)
         flags = implot.Flags_.no_title | implot.Flags_.no_menus | implot.Flags_.no_legend
         flags |= implot.Flags_.no_mouse_text
         follows = graph.entity not in window.dashboard.free_axes

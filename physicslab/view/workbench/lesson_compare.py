@@ -23,6 +23,8 @@ RIGHT, WRONG, RUN = "\uf00c", "\uf00d", "\uf04b"
 
 _NUMBER = 4.2
 """Least width of a column, in heights of the text."""
+_GAP = 5.5
+"""That of the last one: a mark, and one figure with a power of ten."""
 _SMALLEST = 0.75
 """Least size of the table's text, as a share of the usual."""
 _COUNTS = 1e6
@@ -45,6 +47,7 @@ def build_compare(ui: Ui, lesson: OpenLesson, part: Compare, rows_of: Rows) -> N
     flags = imgui.TableFlags_.row_bg | imgui.TableFlags_.sizing_stretch_prop
     heads = ("", *(["predicted"] if predicted else []), "theory", "measured", "gap")
     wide = [max(1.15 * imgui.calc_text_size(ui.said(head)).x, _NUMBER * ui.size) for head in heads[1:]]
+    wide[-1] = max(wide[-1], _GAP * ui.size)
     room = imgui.get_content_region_avail().x - 2.0 * len(heads) * imgui.get_style().cell_padding.x
     least = _NUMBER * ui.size
     smaller = max(_SMALLEST, min(1.0, room / (least + sum(wide))))  # else words break within

@@ -13,7 +13,7 @@ from physicslab.lessons.check import Row, si_unit
 from physicslab.lessons.lesson import Compare, Question
 from physicslab.theme import Colour
 from physicslab.view.canvas.quantities import rounded_up, written_unit
-from physicslab.view.toolkit.axes import finish_axes, plot_rect
+from physicslab.view.toolkit.axes import finish_axes, pad_plot, plot_rect
 from physicslab.view.toolkit.style import as_vector
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.lesson import Curve, OpenLesson, Trial
@@ -150,7 +150,7 @@ def _with_unit(words: str, unit: str) -> str:
 
 def _begin(ui: Ui, name: str, across: str, along: str, flags: int = _FLAGS) -> bool:
     """Begin a graph with what it shows written above it."""
-    implot.get_style().plot_padding = ImVec2(0.3 * ui.size, 0.3 * ui.size)
+    pad_plot(ui.size)
     implot.get_style().legend_padding = ImVec2(0.3 * ui.size, 0.1 * ui.size)
     ui.faint(along, wrapped=False)
     if not implot.begin_plot(f"##{name}", ImVec2(-1.0, _HEIGHT * ui.size), flags):
@@ -180,6 +180,7 @@ class CurveField:
         end, low, high = _axes(lesson, part)
         name = _plain(part.answer) if part.answer is not None else ""
         ui.faint("Draw it: press the button of the mouse in the graph, and go along.")
+        pad_plot(ui.size)
         if implot.begin_plot(f"##draw {part.name}", ImVec2(-1.0, 1.3 * _HEIGHT * ui.size),
                              _FLAGS | implot.Flags_.no_legend):  # fmt: skip
             across, along = _with_unit(Sentence("time"), "s"), _with_unit(name, part.unit)
