@@ -34,17 +34,19 @@ def test_a_run_stops_when_its_time_is_up_and_keeps_what_it_reached(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     load_scene("gas").run(steps=2)  # kernels are there
-    start = time.perf_counter()
-    command = ["run", "gas", "--seconds", "100000", "--at-most", "1", "--json", "o.json", "--csv", "o.csv"]
+    command = ["run", "gas", "--seconds", "1e8", "--at-most", ".3", "--json", "o.json", "--csv", "o.csv"]
     assert main(command) == 1
-    assert 1.0 < time.perf_counter() - start < 15.0, "the rest is loading and writing"
     said = capsys.readouterr()
     report = json.loads(Path("o.json").read_text())
     assert said.err == f"physicslab: gas: {report['stopped']}\n" and said.out.startswith("gas: ")
-    reached = f"at t = {report['time']:.9g} s, after {report['steps']} of 6000000 steps"
-    assert report["stopped"] == f"stopped after 1 s of wall clock (--at-most) {reached}"
+    reached = f"at t = {report['time']:.9g} s, after {report['steps']} of 6000000000 steps"
+    assert report["stopped"] == f"stopped after 0.3 s of wall clock (--at-most) {reached}"
     with Path("o.csv").open(newline="") as file:
         assert float(list(csv.reader(file))[-1][0]) == report["time"] > 0.0
+    world = load_scene("gas")
+    world.run(steps=report["steps"])
+    places = [report["entities"][world.label(entity)]["position"] for entity in world.entities()]
+    assert places == [list(world.component(entity, Transform).position) for entity in world.entities()]
 
 
 def test_a_run_in_python_has_a_budget_too() -> None:
@@ -69,17 +71,6 @@ def test_a_run_within_its_budget_is_as_any_other(capsys: pytest.CaptureFixture[s
     one, two = (json.loads(Path(name).read_text()) for name in ("0.json", "2.json"))
     assert one["entities"] == two["entities"] and one["steps"] == two["steps"] == 180
     assert "stopped" not in two
-
-
-def test_it_stops_within_a_second_however_long_the_run_is() -> None:
-    load_scene("gas").run(steps=2)  # kernels are there
-    assert main(["run", "gas", "--seconds", "1e8", "--at-most", "0.5", "--json", "o.json"]) == 1
-    report = json.loads(Path("o.json").read_text())
-    assert 0.3 < report["wall_s"] < 1.5
-    world = load_scene("gas")
-    world.run(steps=report["steps"])
-    places = [report["entities"][world.label(entity)]["position"] for entity in world.entities()]
-    assert places == [list(world.component(entity, Transform).position) for entity in world.entities()]
 
 
 @pytest.mark.parametrize(("scene", "seconds"), [("pendulum", "50"), ("drop", "50"), ("stack", "30")])

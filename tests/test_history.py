@@ -537,15 +537,15 @@ TestRandomCommands.settings = settings(max_examples=10, stateful_step_count=30, 
 
 @pytest.mark.slow
 def test_thousands_of_random_commands_are_taken_back(pytestconfig: pytest.Config) -> None:
-    driver = Driver(box_of_discs(10, 4), 10, budget=64 * 2**20)
-    for _ in range(round(10_000 * pytestconfig.getoption("effort"))):
+    driver = Driver(box_of_discs(10, 4), 10, budget=2**20)
+    for _ in range(round(2_000 * pytestconfig.getoption("effort"))):
         driver.anything()
-    assert driver.history.size <= 64 * 2**20
+    assert driver.history.size <= 2**20
     driver.back_to_the_start()
 
 
 @pytest.mark.slow
-def test_ten_thousand_random_seeks_give_the_bits_of_a_fresh_run(pytestconfig: pytest.Config) -> None:
+def test_thousands_of_random_seeks_give_the_bits_of_a_fresh_run(pytestconfig: pytest.Config) -> None:
     document = crowd(77)
     document["simulation"]["contacts"] = "soft"
     history, fresh, expected = History(read_scene(document)), read_scene(document), []
@@ -554,7 +554,7 @@ def test_ten_thousand_random_seeks_give_the_bits_of_a_fresh_run(pytestconfig: py
         fresh.step()
     history.step(steps=2999)
     rng = random.Random(12)
-    for _ in range(round(10_000 * pytestconfig.getoption("effort"))):
+    for _ in range(round(2_000 * pytestconfig.getoption("effort"))):
         step = rng.randrange(3000)
         history.seek(step)
         assert bits(history.world) == expected[step]

@@ -9,7 +9,6 @@ import os
 import re
 import subprocess
 import sys
-import time
 import tracemalloc
 from collections import Counter
 from collections.abc import Callable, Iterator
@@ -698,7 +697,6 @@ def test_pictures_are_drawn_before_the_painters_are_there() -> None:
 def test_what_is_far_larger_than_the_picture_is_cut_off(size: float) -> None:
     surface = pygame.Surface((60, 40), 0, 32)
     canvas, look = PygameCanvas(surface), Look.plain((200, 40, 40), (255, 255, 255), 1)
-    start = time.perf_counter()
     with interpreted():
         canvas.boxes(np.array(((30.0, size / 2 + 20.0),)), np.array(((size, size),)), np.zeros(1), look)
         assert surface.get_at((30, 35))[:3] == (200, 40, 40) and surface.get_at((30, 10))[:3] == (0, 0, 0)
@@ -706,7 +704,6 @@ def test_what_is_far_larger_than_the_picture_is_cut_off(size: float) -> None:
         canvas.discs(np.array(((30.0, size + 20.0),)), np.array((size,)), np.zeros(1), look)
         canvas.lines(np.array(((-size, 5.0),)), np.array(((size, 5.0),)), (0, 0, 255))
     assert surface.get_at((30, 5))[:3] == (0, 0, 255)
-    assert time.perf_counter() - start < 2.0
 
 
 def waiting(*names: str) -> list[Any]:

@@ -23,6 +23,7 @@ from physicslab.ecs.conditions import Condition
 from physicslab.ecs.quantity_text import Expression, InvalidText, Quantity
 from physicslab.ensembles import ensemble
 from physicslab.files.scene import load_scene
+from physicslab.kernels.records import IMPACT
 from physicslab.languages.catalogue import languages
 from physicslab.lessons.catalogue import LESSONS, LIBRARY, find_lesson
 from physicslab.lessons.check import LessonRuns, check_lesson, row_of
@@ -278,6 +279,14 @@ def test_of_very_many_impacts_in_a_step_evenly_chosen_ones_are_noted() -> None:
     assert 500 < len(times) <= 1000 and np.diff(times).max() < 2.0 * world.time / len(times)
     assert all({abs(v) for v in sides} == {2e5} for sides in record.sides["b.vx"].values())
     assert [len(breaks) for breaks in record.breaks.values()] == [len(times), 1, 1, 1, 0]
+
+
+def test_of_impacts_at_one_moment_the_first_and_the_last_of_each_body_are_noted() -> None:
+    """A body between a heavy one and a wall comes to rest by forty thousand a step, at few moments."""
+    record, records = Record(load_scene("drop"), ("ball.vx", "world.kinetic")), np.zeros(9, IMPACT)
+    records["time"] = [0.1, *[0.2] * 7, 0.3]
+    records["entity_a"], records["entity_b"] = [1, 1, 1, 1, 2, 1, 1, 2, 1], [2, 3, 2, 2, 3, 2, 2, 4, 2]
+    assert np.flatnonzero(record._chosen(records, {None, 1})).tolist() == [0, 1, 2, 4, 6, 7, 8]
 
 
 def test_a_run_of_many_impacts_that_is_recorded_at_once_has_all_of_them() -> None:

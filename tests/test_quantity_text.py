@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time
 
 import pytest
 from hypothesis import example, given
@@ -72,15 +71,13 @@ def test_what_is_refused_and_in_which_words(text: str, unit: str, words: str) ->
 
 
 def checked(text: str, unit: str) -> None:
-    """Check that a text is a finite number or refused in one line, soon."""
-    start = time.perf_counter()
+    """Check that a text is a finite number or refused in one line."""
     try:
         value = evaluate(text, unit)
     except InvalidText as error:
         assert str(error) and str(error).isprintable()
     else:
         assert type(value) is float and math.isfinite(value)
-    assert time.perf_counter() - start < 1.0
 
 
 WORDS = (

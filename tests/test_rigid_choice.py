@@ -259,7 +259,7 @@ def heap(seed: int) -> World:
 
 def test_where_events_accumulate_the_step_is_finished_by_impulses_and_that_is_told() -> None:
     by_impulses = 0
-    for seed in range(3):
+    for seed in (3, 5):
         world = heap(seed)
         energy, booked = measure_energy(world).total, 0.0
         for _ in range(120):

@@ -232,8 +232,7 @@ class ImpactReader:
             return
         self.lost += max(new - ring, 0)
         for first in range(max(self._next, logged - ring), logged, _BLOCK):
-            number = np.arange(first, min(first + _BLOCK, logged))
-            yield contacts.log[number % ring]
+            yield contacts.impacts_since(first, _BLOCK)
         self._next = logged
         if new > _GROWS_FROM * ring and ring < _MAX_RING:
             contacts.lengthen_log(2 * ring)

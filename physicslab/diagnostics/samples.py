@@ -176,7 +176,8 @@ class Record:
     def _chosen(self, records: NDArray[Any], bodies: set[int | None]) -> NDArray[np.bool_]:
         """Return which impacts are noted: the first and the last of each body in each share of a step.
 
-        ``None`` is the world, of which all are.
+        ``None`` is the world, of which all are. Of many of a body at the same moment the first and the last
+        tell what was before and after.
         """
         times, chosen = records["time"], np.zeros(len(records), np.bool_)
         shares = np.floor(times * (0.5 * _MOST / self._world.simulation.dt))
@@ -184,6 +185,13 @@ class Record:
             takes_part = (records["entity_a"] == body) | (records["entity_b"] == body) | (body is None)
             begins = np.diff(shares[takes_part], prepend=np.nan, append=np.nan) != 0.0
             chosen |= takes_part & np.isin(times, times[takes_part][begins[1:] | begins[:-1]])
+        place = np.tile(np.flatnonzero(chosen), 2)
+        ends = np.concatenate((records["entity_a"][chosen], records["entity_b"][chosen]))
+        order = np.lexsort((place, ends, times[place]))
+        keys = np.stack((times[place], ends))[:, order]
+        begins = (np.diff(keys, prepend=np.nan, append=np.nan) != 0.0).any(axis=0)
+        chosen[:] = False
+        chosen[place[order[begins[1:] | begins[:-1]]]] = True
         return chosen
 
     def _note_derived(

@@ -1,5 +1,6 @@
 """The near pairs of a world, those that may touch with a record, and which of them do: arrays."""
 
+import sys
 from collections.abc import Callable
 from typing import Any
 
@@ -127,11 +128,12 @@ class Contacts:
         """
         return self.impacts_since(0)
 
-    def impacts_since(self, first: int) -> NDArray[Any]:
+    def impacts_since(self, first: int, most: int = sys.maxsize) -> NDArray[Any]:
         """Return the impacts from number ``first`` on that are still in the log: an array of IMPACT (n,)."""
-        number = np.arange(max(first, self.logged - len(self.log), 0), self.logged)
-        found: NDArray[Any] = self.log[number % len(self.log)]
-        return found
+        length, first = len(self.log), max(first, self.logged - len(self.log), 0)
+        begin = first % length
+        end = begin + max(min(self.logged - first, most), 0)
+        return np.concatenate((self.log[begin:end], self.log[: max(end - length, 0)]))
 
     def order_log(self, first: int) -> None:
         """Put the impacts from number ``first`` on into the order of time, as those of a substep are not."""
@@ -148,7 +150,9 @@ class Contacts:
     def lengthen_log(self, length: int) -> None:
         """Let the log hold so many impacts, no fewer than now; those in it stay."""
         last, log = self.impacts, np.zeros(length, IMPACT)
-        log[np.arange(self.logged - len(last), self.logged) % length] = last
+        begin = (self.logged - len(last)) % length
+        before = min(len(last), length - begin)
+        log[begin : begin + before], log[: len(last) - before] = last[:before], last[before:]
         self.log = log
 
     def make_room(self, capacity: int) -> None:
