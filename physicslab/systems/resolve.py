@@ -15,7 +15,8 @@ class ResolveSystem(System):
     Parameters
     ----------
     push : float
-        Share of the overlap that is corrected in a substep.
+        Share of the overlap that is corrected in a substep; with n sweeps, fewer than four, (n / 4)^(1/2) of
+        that, by a spring as much stiffer.
     stiffness : float
         Stiffness of the contact spring, in effective masses over the substep squared. With n sweeps over the
         contacts it is n^1.25 times as much: what rests sinks by its load h^2 / (m push stiffness n^1.25).
