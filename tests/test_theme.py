@@ -15,6 +15,7 @@ from imgui_bundle import imgui
 import physicslab
 from physicslab.components.colour import rgb_of
 from physicslab.components.made_of import SUBSTANCES
+from physicslab.components.quantities import ENERGY_CAUSES
 from physicslab.theme import DARK, LEGIBLE, LIGHT, THEMES, Colour, Theme, contrast
 from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.canvas import Finish, Look
@@ -29,6 +30,7 @@ from physicslab.view.overlay.arrows import (
 )
 from physicslab.view.picture.backdrop import draw_backdrop
 from physicslab.view.workbench.menus import ICON_BODIES, ICON_COLOURS
+from physicslab.view.workbench.world_panel import _colour
 
 # What the three common kinds of colour blindness make of linear RGB (Machado, Oliveira & Fernandes, 2009).
 SEEN_BY = {
@@ -200,3 +202,10 @@ def test_icons_of_tools_have_the_colours_of_their_things() -> None:
             assert contrast(getattr(theme, name), theme.key) >= 2.2  # an icon beside its word
         for number in ICON_BODIES.values():
             assert contrast(theme.bodies[number], theme.key) >= 3.0
+
+
+@pytest.mark.parametrize("theme", THEMES, ids=lambda theme: theme.name)
+def test_causes_of_energy_can_be_told_apart(theme: Theme) -> None:
+    """What a hand, edits, a thrust and joints gave had one colour."""
+    paints = [_colour(name, theme) for name in ENERGY_CAUSES]
+    assert all(np.linalg.norm(np.subtract(*two)) > 15.0 for two in itertools.combinations(paints, 2))

@@ -48,6 +48,8 @@ _ERROR_TIP = (
 )
 _COLOURS = {"impacts": 4, "friction": 5, "damping": 6, "contact": 2, "overlap": 3, "fields": 1, "motors": 0}
 """Which of the colours of bodies an account has; they can be told apart by the colour-blind, too."""
+_PAINTS = {"edits": "kinematic", "hand": "held", "thrust": "planet", "joints": "rope"}
+"""Which colour of the theme another account has."""
 _BEYOND = 0.25
 """Share of what is below zero that bars have room for above it."""
 _LABEL, _SPOT = 0.85, 0.26
@@ -109,9 +111,15 @@ def parts_of(figures: WorldFigures, theme: Theme) -> tuple[list[Part], list[Part
         Part("potential", audit.latest.stored, theme.force),
     ]
     for name, value in flows(audit.notable):
-        colour = theme.bodies[_COLOURS[name]] if name in _COLOURS else theme.kinematic
-        (came if value > 0.0 else went).append(Part(_named(name, figures), abs(value), colour))
+        own = Part(_named(name, figures), abs(value), _colour(name, theme))
+        (came if value > 0.0 else went).append(own)
     return came, went
+
+
+def _colour(name: str, theme: Theme) -> Colour:
+    """Return the colour of an account."""
+    paint: Colour = theme.bodies[_COLOURS[name]] if name in _COLOURS else getattr(theme, _PAINTS[name])
+    return paint
 
 
 def build_energies(ui: Ui, figures: WorldFigures, *, error: bool) -> None:
