@@ -100,7 +100,7 @@ def test_entries_are_in_plain_english_and_say_what_is_done() -> None:
         ("took Velocity from stone", True),
         ("dt: 0.01 s", False),
     ]
-    assert history.position == 7 and history.entries[1].steps == 160 and history.entries[2].first_step == 160
+    assert history.position == 7 and history.entries[1].steps == 160
 
 
 def test_a_group_is_one_entry_and_its_entities_are_numbered_in_order() -> None:

@@ -32,13 +32,12 @@ class HistoryEntry:
         The edit or run in plain English: "made a circle", "mass of ball: 2 kg", "ran 3.2 s".
     done : bool
         Whether it, or the beginning of it, lies before the present place.
-    first_step, steps : int
-        How many steps the line has before it, and how many it is.
+    steps : int
+        How many it is.
     """
 
     words: str
     done: bool
-    first_step: int
     steps: int
 
 
@@ -247,7 +246,7 @@ class History:
         """The edits and runs of the line, those that were taken back last among them."""
         line, here = self._places.line, self._places.here
         return tuple(
-            HistoryEntry(entry.words, line.start_of(k) < here, line.steps_before_entry(k), entry.steps)
+            HistoryEntry(entry.words, line.start_of(k) < here, entry.steps)
             for k, entry in enumerate(line.entries)
         )
 

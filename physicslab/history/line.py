@@ -198,10 +198,6 @@ class Line:
         """Return how many ticks there are before an entry; that of none, at the end of the line."""
         return self._ticks_before[entry] if entry < len(self.entries) else self.ticks
 
-    def steps_before_entry(self, entry: int) -> int:
-        """Return how many steps there are before an entry."""
-        return self._steps_before[entry]
-
     def entry_at(self, tick: int) -> int:
         """Return the number of the entry in which the tick after the first ``tick`` is."""
         if tick >= self.ticks:
