@@ -205,14 +205,16 @@ def sweep_outlines(
         elif found.points == 0:
             return MISS
         else:
-            point = (
-                found.two if found.points == 2 and found.two.separation < found.one.separation else found.one
-            )
-            rate = opening(point, moved, nx, ny, turn_a, turn_b)
-            if rate >= 0.0:
+            later, rest = math.inf, 0.0  # of two points one may open while the other one closes
+            for j in range(found.points):
+                point = found.one if j == 0 else found.two
+                rate = opening(point, moved, nx, ny, turn_a, turn_b)
+                if rate < 0.0 and point.separation < -later * rate:
+                    later, rest = -point.separation / rate, point.separation
+            if later == math.inf:
                 return MISS
-            t -= point.separation / rate
-            if abs(point.separation) <= 1e-14 * farthest:
+            t += later
+            if abs(rest) <= 1e-14 * farthest:
                 break
         if t > 1.0 or t < 0.0:
             return MISS
