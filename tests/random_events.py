@@ -36,7 +36,7 @@ HOSTILE_NAMES = (
     b"x" * 240 + b".json", b"\x1b[2J.json", b"-.json", b"=1+1.json", b" .json",
 )  # fmt: skip
 _WORDS = (
-    "##", "###a", "a##b", "%d%s%n", "The world", "none", "a fixed point", "itself", "\u202ex",
+    "##", "###a", "a##b", "%d%s%n", "The world", "none", "fixed point", "itself", "\u202ex",
     "e" + "\u0301" * 60, "\U0001f680", "x" * 200, "Gravity", "wall", "circle 1", "=1", "'", '"', "\\",
     "\uf25a", "A##1", "a\u200bb",
 )  # fmt: skip

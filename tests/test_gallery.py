@@ -96,6 +96,12 @@ def test_tags_narrow_the_cards(desk: Desk) -> None:
     assert len(cards(desk)) == len(SCENES) + len(LESSONS) + 2
 
 
+def test_letters_after_a_click_on_a_tag_are_for_the_search(desk: Desk) -> None:
+    click(desk, "Tag: planets")
+    write(desk, "star")
+    assert cards(desk) == [SCENES["solar_system"].title]
+
+
 def test_one_esc_closes_it(desk: Desk) -> None:
     write(desk, "r")
     tap(desk, "escape")

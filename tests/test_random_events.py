@@ -110,17 +110,17 @@ def test_the_end_of_a_spring_is_chosen_by_what_it_is_and_not_by_what_it_is_calle
     world = show(desk, empty_world())
     bodies = [circle(world, (float(n), 0.0)) for n in range(3)]
     spring = world.spawn(Spring(a=bodies[0], b=bodies[1], rest_length=1.0, stiffness=1.0))
-    world.add(bodies[2], Name("a fixed point"))
+    world.add(bodies[2], Name("fixed point"))
     desk.window.selection.take(spring)
     desk.frames(6)
     click(desk, "Spring.b")
-    options = [label for label in desk.ui.places if label == "Spring.b: a fixed point"]
+    options = [label for label in desk.ui.places if label == "Spring.b: fixed point"]
     assert options, "the words stand there twice: for the body, and for none"
     tap(desk, "escape")
     world.add(spring, Spring(a=bodies[0], b=bodies[2], rest_length=1.0, stiffness=1.0))
     desk.frames(4)
     click(desk, "Spring.b")
-    click(desk, "Spring.b: a fixed point")
+    click(desk, "Spring.b: fixed point")
     assert desk.world.component(spring, Spring).b is None, "the first line is none at all"
 
 

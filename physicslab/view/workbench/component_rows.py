@@ -195,7 +195,7 @@ class ComponentRows:
         ui, world, window = self.ui, self.world, self.window
         (entity,), none = window.selection.entities, _ABSENT.get(key, "none")
         if kind in KINDS and not world.has(entity, Transform):
-            none = "a fixed point"
+            none = "fixed point"
         self.numbers.label(ui, key, _label(spec), spec)
         room = imgui.get_content_region_avail().x - _AIM * ui.size
         now = none if end is None else world.label(end)
@@ -343,6 +343,6 @@ _NAMES = {
 _ABSENT = {
     f"{kind.__name__}.{field}": words
     for kind in _JOINING
-    for field, words in (("a", "itself"), ("b", "a fixed point"))
+    for field, words in (("a", "itself"), ("b", "fixed point"))
 }
 """The meaning of an absent entity, by component and field."""

@@ -87,11 +87,12 @@ class Gallery:
         ui.faint(hint, wrapped=False)
         every = [(source, known) for source in self._sources if (known := self._known(source)) is not None]
         tags = dict.fromkeys(tag for _, known in every for tag in known.tags)
+        clicked = False
         for n, tag in enumerate(("", *sorted(tags, key=lambda tag: (tag != _OWN, ui.said(tag).casefold())))):
             if n:
                 ui.same_line_if_room(tag, end)
             if ui.button(f"Tag: {tag or 'all'}", shown=tag or "all", on=tag == self._tag):
-                self._tag = tag
+                self._tag, clicked = tag, imgui.is_mouse_released(imgui.MouseButton_.left)
         wanted = _parted(plain(self._words)).split()
         found = [
             (source, known)
@@ -99,7 +100,8 @@ class Gallery:
             if (not self._tag or self._tag in known.tags)
             and (not wanted or all(f" {word}" in _text(ui, source, known) for word in wanted))
         ]
-        self._keeps_focus = entered and not (found and wanted)  # the next letters are for the search, too
+        # The next letters are for the search, too.
+        self._keeps_focus = clicked or (entered and not (found and wanted))
         if entered and found and wanted:
             window.do_next(*_opening(found[0][0]))
         return found
