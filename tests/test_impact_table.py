@@ -266,6 +266,11 @@ def test_a_longer_ring_keeps_what_there_was() -> None:
     contacts.lengthen_log(16)
     assert len(contacts.log) == 16
     assert [contacts.log[n % 16]["time"] for n in range(17, 27)] == list(range(17, 27))
+    assert contacts.impacts_since(5)["time"].tolist() == list(range(17, 27)), (
+        "what it lacked was read as zeros"
+    )
+    contacts.logged = 20
+    assert contacts.impacts["time"].tolist() == [17.0, 18.0, 19.0]
 
 
 def written(world: World, steps: int, each: int) -> tuple[list[list[str]], ImpactTableWriter]:

@@ -217,8 +217,8 @@ from physicslab import load_scene
 from physicslab.components import Transform, Velocity
 from physicslab.kernels import KERNELS
 from physicslab.kernels.keys import platform_key
-world = load_scene("drop")
-world.run(seconds=2.0)
+world = load_scene("newtons_cradle")
+world.run(seconds=1.0)
 if sys.argv[1] == "pack":
     path.write_bytes(pack())
 bits = [world.table(Transform)["position"], world.table(Transform)["angle"], world.table(Velocity)["linear"]]

@@ -230,8 +230,9 @@ class ImpactReader:
         new = logged - self._next
         if new <= 0:
             return
-        self.lost += max(new - ring, 0)
-        for first in range(max(self._next, logged - ring), logged, _BLOCK):
+        oldest = max(self._next, contacts.first_logged)
+        self.lost += oldest - self._next
+        for first in range(oldest, logged, _BLOCK):
             yield contacts.impacts_since(first, _BLOCK)
         self._next = logged
         if new > _GROWS_FROM * ring and ring < _MAX_RING:

@@ -116,6 +116,7 @@ class Contacts:
         self.impulse_dt, self.substep_factor = 0.0, 1
         self.stale, self.replaced = True, 0
         self.log: NDArray[Any] = np.zeros(self.LOGGED, IMPACT)
+        self._lengthened = 0
         self.read = False
         self.source: Callable[[], None] | None = None
         self.make_room(64)
@@ -128,9 +129,16 @@ class Contacts:
         """
         return self.impacts_since(0)
 
+    @property
+    def first_logged(self) -> int:
+        """The number of the oldest impact in the log: a longer one still lacks what the shorter one did."""
+        self._lengthened = min(self._lengthened, self.logged)  # time may have gone back
+        first: int = max(self.logged - len(self.log), self._lengthened)
+        return first
+
     def impacts_since(self, first: int, most: int = sys.maxsize) -> NDArray[Any]:
         """Return the impacts from number ``first`` on that are still in the log: an array of IMPACT (n,)."""
-        length, first = len(self.log), max(first, self.logged - len(self.log), 0)
+        length, first = len(self.log), max(first, self.first_logged)
         begin = first % length
         end = begin + max(min(self.logged - first, most), 0)
         return np.concatenate((self.log[begin:end], self.log[: max(end - length, 0)]))
@@ -149,8 +157,8 @@ class Contacts:
 
     def lengthen_log(self, length: int) -> None:
         """Let the log hold so many impacts, no fewer than now; those in it stay."""
-        last, log = self.impacts, np.zeros(length, IMPACT)
-        begin = (self.logged - len(last)) % length
+        last, log, self._lengthened = self.impacts, np.zeros(length, IMPACT), self.first_logged
+        begin = self._lengthened % length
         before = min(len(last), length - begin)
         log[begin : begin + before], log[: len(last) - before] = last[:before], last[before:]
         self.log = log
