@@ -138,8 +138,8 @@ def test_many_are_brought_back_at_once_and_a_run_has_the_bits_of_its_steps() -> 
         return world
 
     one, other = made(), made()
-    one.run(steps=90)
-    for _ in range(90):
+    one.run(steps=120)
+    for _ in range(120):
         other.step()
     assert one.returned_inside == other.returned_inside > 0
     position = one.table(Transform)["position"]

@@ -187,8 +187,11 @@ def test_pairs_that_stay_apart_in_a_step_are_passed_over_with_the_same_bits(
     """Where a system looks at substeps, all pairs are looked at in each of them."""
     stepped, ran = watched(random_scene(*seed)[0].build()), random_scene(*seed)[0].build()
     stepped.run(steps=90)
-    ran.run(steps=90)
-    assert ran.contacts.counts[FOLLOWED] > 0
+    followed = 0
+    for _ in range(9):
+        ran.run(steps=10)
+        followed = max(followed, ran.contacts.counts[FOLLOWED])
+    assert followed > 0
     assert stepped.contacts.counts[FOLLOWED] == 0
     assert_alike(stepped, ran)
 

@@ -22,6 +22,8 @@ _KNOWN_BY = 4
 """So many letters around its gaps tell a sentence that begins with one."""
 _AS_WRITTEN = frozenset({"block", "entry", "file", "line", "names", "path", "text"})
 """Gaps with what stands in a file, which is the same in every language."""
+_IN_GAPS = {"entry": r"\S", "file": r"(?:(?!: line \d).)", "path": r"(?:(?!: line \d).)"}
+"""Patterns of what is in gaps, where that is not anything."""
 _KEPT = 4096
 """Texts whose translation is kept: panels write the same ones again and again."""
 
@@ -171,8 +173,8 @@ def _sentences(code: str) -> dict[str, list[tuple[re.Pattern[str], tuple[str, ..
 
 
 def _gap_pattern(found: re.Match[str]) -> str:
-    """Return the pattern of a gap; an entry of a file is one word."""
-    return rf"(?P<{found[1]}>{r'\S' if found[1] == 'entry' else '.'}+?)"
+    """Return the pattern of a gap; an entry of a file is one word, and in a file's name there is no line."""
+    return rf"(?P<{found[1]}>{_IN_GAPS.get(found[1], '.')}+?)"
 
 
 def _is_sentence(text: str) -> bool:
