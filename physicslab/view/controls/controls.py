@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from operator import attrgetter
-from typing import Any
+from typing import Any, Literal
 
 import pygame
 
@@ -223,6 +223,14 @@ def _switch(
     )  # fmt: skip
 
 
+def _overlay(label: str, name: Literal["arrows", "impulses", "momenta"], tip: str) -> Control:
+    """Return what shows or hides an overlay, whose scale is chosen as it is shown."""
+    return Control(
+        label, name, label.lower(), lambda world, window: window.overlays.toggle(name, world, window.camera),
+        group="show", tip=tip, shows=name, state=lambda _, window: bool(getattr(window.overlays, name)),
+    )  # fmt: skip
+
+
 def _instrument(label: str, does: str, tool: Tool, tip: str) -> Control:
     """Return what takes the tool of an instrument in hand, or measures with it."""
     action = measuring.key_action(tool, actions.choose_tool)
@@ -292,15 +300,10 @@ CONTROLS: tuple[Control, ...] = (
     Control("O", "planets", "o", actions.toggle_planets, group="laws",
             state=lambda world, _: _gravity_is(world, "planet"),
             tip="Planet mode: all bodies attract each other"),
-    Control("V", "arrows", "v", lambda world, window: window.overlays.toggle("arrows", world, window.camera),
-            group="show", state=lambda _, window: window.overlays.arrows, shows="arrows",
-            tip="Velocities, net forces, contact normals"),
+    _overlay("V", "arrows", "Velocities, net forces, contact normals"),
     Control("T", "trails", "t", lambda world, window: window.trails.toggle(world), group="show",
             state=lambda world, _: bool(world.table(Trail).handles), tip="Trails behind moving bodies"),
-    Control("E", "impulses", "e",
-            lambda world, window: window.overlays.toggle("impulses", world, window.camera), group="show",
-            shows="impulses",
-            state=lambda _, window: window.overlays.impulses, tip="Impulses at contacts, with numbers"),
+    _overlay("E", "impulses", "Impulses at contacts, with numbers"),
     _instrument("D", "ruler", measuring.RULER, "A length: drag; or between two selected bodies"),
     _instrument("Y", "angle", measuring.PROTRACTOR,
                 "An angle: drag one arm from the vertex, then click the end of the other"),
@@ -333,10 +336,8 @@ CONTROLS: tuple[Control, ...] = (
             tip="Change a number by sliding: of the selection, or gravity"),
     _switch("I", "panel at the right", "i", "figures", "show", "The selection, or the world, in figures"),
     _switch("H", "grid", "h", "grid", "show", "The grid"),
-    Control("Shift+V", "momenta", "shift+v",
-            lambda world, window: window.overlays.toggle("momenta", world, window.camera), group="show",
-            state=lambda _, window: window.overlays.momenta, shows="momenta",
-            tip="The momentum of each body as an arrow; with the centre of mass, of all together"),
+    _overlay("Shift+V", "momenta",
+             "The momentum of each body as an arrow; with the centre of mass, of all together"),
     _switch("Shift+C", "centre of mass", "shift+c", "overlays.centres", "show",
             "The centre of mass of all that moves, and of the selected bodies"),
     _switch("Shift+X", "parts along x and y", "shift+x", "overlays.parts", "show",
