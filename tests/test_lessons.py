@@ -92,7 +92,8 @@ def test_a_theory_holds_where_it_says_for_all_values_that_learners_may_choose(na
         return [one for one in ranges if random.random() < 0.7]
 
     # Each by itself, as some theories hold only where others stay as they are; then several at once.
-    shared, first = [draw([one]) for one in ranges] + [draw(some())], {}
+    shared = [draw([one]) for one in ranges] + [draw(some())]
+    first: dict[tuple[object, ...], Run | None] = {}
     for compare in lesson.compares():
         for values in (*shared, (*random.choice(compare.cases).values, *draw(some()))):
             try:
