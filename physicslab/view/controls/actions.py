@@ -26,7 +26,7 @@ from physicslab.view.window.tour import Search, Tour
 from physicslab.view.window.window import OPENED, Action, Window
 from physicslab.world import World
 
-_AFTER_CLOSING = 1.0
+_AFTER_CLOSING = 3.0
 """How long [s] after something was closed Esc does not quit."""
 _ZOOM_STEP = 3.0
 """How many notches of the wheel a key or a button zooms by."""
