@@ -23,7 +23,6 @@ os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
 
 import pygame
 
-from physicslab.desktop.garbage import freeze
 from physicslab.desktop.sandbox import Sandbox
 from physicslab.ecs.config import PhysicsConfig
 from physicslab.files.scene import load_scene
@@ -158,7 +157,7 @@ def measure(
         press(key)
     spent = np.zeros((frames, len(PARTS)))
     timings = world.schedule.timings
-    freeze()
+    gc.freeze()
     for n in range(-WARM_UP, frames):
         before = {name: timing.nanoseconds for name, timing in timings.items()}
         collected, cpu, start = collections.nanoseconds, time.process_time_ns(), time.perf_counter_ns()

@@ -9,6 +9,7 @@ at most 2 ms are allowed. Exit code 1 says that it was more by both.
 from __future__ import annotations
 
 import argparse
+import gc
 import os
 import sys
 import time
@@ -21,7 +22,6 @@ import pygame
 from frames import FRAME, SIZE, WARM_UP, press
 
 from physicslab.components import Transform, Velocity
-from physicslab.desktop.garbage import freeze
 from physicslab.desktop.sandbox import Sandbox
 from physicslab.files.scene import load_scene
 from physicslab.kernels import KERNELS, compile_kernels
@@ -70,7 +70,7 @@ def main() -> int:
     pygame.display.init()
     windows = {"without panels": without_panels(options.scene), "with panels": with_panels(options.scene)}
     spent = np.zeros((options.frames, len(windows), 2))
-    freeze()
+    gc.freeze()
     for n in range(-WARM_UP, options.frames):
         for k, sandbox in enumerate(windows.values()):
             wall, cpu = time.perf_counter_ns(), time.process_time_ns()

@@ -182,7 +182,7 @@ def test_a_wrong_drift_is_an_error_of_its_true_size(name: str) -> None:
         (
             "spring",
             (
-                packed_forces._pull,
+                packed_forces.pull_ends,
                 "force[a] += fx\n    force[a + 1] += fy",
                 "force[a] += 1.001 * fx\n    force[a + 1] += 1.001 * fy",
             ),
@@ -276,14 +276,14 @@ def test_beside_contacts_what_is_wrong_between_them_is_an_error(method: str, kin
             (flow._advance, "speed[i] += kick * (", "speed[i] += 1.001 * kick * ("),
         ),
         ("spring_splitting", "drift"): ((flow._kick_and_drift, "drift * v", "1.001 * drift * v"),),
-        ("spring_splitting", "force"): ((flow._pull, "fx, fy = share * dx, share * dy",
-                                         "fx, fy = 1.001 * share * dx, 1.001 * share * dy"),),
+        ("spring_splitting", "force"): ((flow._pull, "at, share * dx, share * dy",
+                                         "at, 1.001 * share * dx, 1.001 * share * dy"),),
         ("damped", "kick"): ((full._change, "speed[i] += share", "speed[i] += 1.001 * share"),),
         ("damped", "drift"): ((full._drift, "+= span * speed[i]", "+= 1.001 * span * speed[i]"),),
         ("damped", "force"): ((full._evaluate, "tension = take(", "tension = 1.001 * take("),),
         ("dop853", "kick"): (KICK,),
         ("dop853", "drift"): (DRIFTS[dop853.dop853],),
-        ("dop853", "force"): ((packed_forces._pull, "force[a] += fx\n    force[a + 1] += fy",
+        ("dop853", "force"): ((packed_forces.pull_ends, "force[a] += fx\n    force[a + 1] += fy",
                                "force[a] += 1.001 * fx\n    force[a + 1] += 1.001 * fy"),),
     }  # fmt: skip
     with changed():

@@ -510,7 +510,6 @@ def test_rates_of_a_net_are_those_of_the_fastest_shape_that_it_may_have(light: f
 
     assert max(fastest(True) for _ in range(20)) <= group.rate
     assert fastest(False) <= group.rate < 1.03 * fastest(False)
-    assert group.decay == pytest.approx(1e-3 * group.rate**2, rel=1e-9)
 
 
 @pytest.mark.parametrize("damping", [0.0, 2e3])

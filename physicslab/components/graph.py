@@ -50,4 +50,4 @@ class GraphLine(Component):
         """Check that there is a graph, and that the body, or the world, has the quantity."""
         if self.graph is None:
             raise InvalidValue("GraphLine", "graph", None, "an entity with a Graph")
-        check_quantity("GraphLine", "quantity", self.quantity, self.body)
+        check_quantity("GraphLine", self.quantity, self.body)

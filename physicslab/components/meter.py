@@ -24,4 +24,4 @@ class Meter(Component):
 
     def validate(self) -> None:
         """Check that the body, or the world, has the quantity."""
-        check_quantity("Meter", "quantity", self.quantity, self.body)
+        check_quantity("Meter", self.quantity, self.body)

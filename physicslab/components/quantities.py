@@ -128,11 +128,11 @@ WORLD_QUANTITIES = tuple(name for name, quantity in QUANTITIES.items() if quanti
 """The names of those that the world has."""
 
 
-def check_quantity(owner: str, field: str, name: str, body: int | None) -> None:
+def check_quantity(owner: str, name: str, body: int | None) -> None:
     """Raise :class:`InvalidValue` if a body, or the world for ``None``, has no such quantity."""
     allowed = why_not_of(name, body)
     if allowed is not None:
-        raise InvalidValue(owner, field, name, allowed)
+        raise InvalidValue(owner, "quantity", name, allowed)
 
 
 def carrier_of(name: str) -> str:

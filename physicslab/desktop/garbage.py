@@ -10,12 +10,6 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 
-def freeze() -> None:
-    """Spare what exists by now from all later searches: a full one then takes a millisecond, not 76."""
-    gc.collect()
-    gc.freeze()
-
-
 @contextmanager
 def loading() -> Iterator[None]:
     """Search for no garbage for the length of a ``with`` block, and never in what is there at its end.

@@ -25,7 +25,11 @@ MAX_POINTS = 64
 _MAX_EVENTS = 2000
 """Largest number of events in a step."""
 _MAX_WORK = 8_500
-"""Largest work of a step by events (:attr:`MadeStep.work`): short steps need the rest of a frame."""
+"""Largest work of a step by events, about as many as microseconds: short steps need the rest of a frame.
+
+It is that of segments, of impacts, and of evaluations of forces, (1 + 2 n) (1 + r) / 4 with n points and r
+rows of joints.
+"""
 _SHORT_STEPS = 32
 """Number of steps by impulses in a whole step."""
 _WHY = {
@@ -57,9 +61,6 @@ class MadeStep:
         lowered, as Newton's law would have made energy.
     energy_added : float
         By moving bodies apart that overlapped [J].
-    work : int
-        About as many as microseconds: of segments, of force evaluations with n points and r rows of joints
-        (1 + 2 n) (1 + r) / 4, of impacts.
     by_impulses : str
         Why the step, or its last part, was made by impulses in short steps; empty if it was not.
     refused : str
@@ -77,7 +78,6 @@ class MadeStep:
     energetic: int = 0
     lowered: int = 0
     energy_added: float = 0.0
-    work: int = 0
     by_impulses: str = ""
     refused: str = ""
     rests: bool = False
@@ -145,7 +145,7 @@ class RigidMotion:
         else:
             made.refused = _WHY[why]
         (
-            made.closed, made.impacts, made.evaluations, made.energetic, made.lowered, made.work,
+            made.closed, made.impacts, made.evaluations, made.energetic, made.lowered, _,
             state.contacts.logged,
         ) = counts.tolist()  # fmt: skip
         made.rests = self._steady and not (made.evaluations or made.impacts or made.refused)

@@ -37,14 +37,13 @@ class SpringGroup(NamedTuple):
         The bodies, and what does not move that springs hold them to.
     steps : int
         Into how many steps half a substep is divided; 0 where they are too fast for any.
-    rate, decay : float
-        The fastest rate at which they swing or are slowed, and at which they are slowed [1/s].
+    rate : float
+        The fastest rate at which they swing or are slowed [1/s].
     """
 
     rows: NDArray[np.bool_]
     steps: int
     rate: float
-    decay: float
 
 
 class Net(NamedTuple):
@@ -131,7 +130,7 @@ def spring_groups(state: State, forces: Sequence[ForceSystem], rows: NDArray[np.
         for end, other in ((a, b), (b, a)):
             part[end[part[other] & ~moves[end]]] = True
         most = 0 if kind == _BEYOND else max(steps[label] for label in chosen)
-        groups.append(SpringGroup(part, most, float(rate[chosen].max()), float(decay[chosen].max())))
+        groups.append(SpringGroup(part, most, float(rate[chosen].max())))
     return groups
 
 

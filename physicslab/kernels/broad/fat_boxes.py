@@ -39,6 +39,20 @@ def _touching_distance(reach: float, radius: float, thickness: float, speculativ
 
 
 @inlined
+def _reaches(
+    moved: float, turned: float, ux: float, uy: float, reach: float, radius: float, thin: float,
+    speculative_margin: float,
+) -> float:  # fmt: skip
+    """Return how far [m] from the way of its fat box a body may have points, ``moved`` from there by now.
+
+    It goes on by (ux, uy) [m], and has turned by ``turned`` [rad] then.
+    """
+    ahead = math.sqrt(ux * ux + uy * uy) * (CORNERWISE if reach > radius else 1.0)
+    needed = _touching_distance(reach, radius, thin, speculative_margin)
+    return moved + ahead + min(turned, 1.0) * (reach - radius) + needed
+
+
+@inlined
 def left(
     i: int, motion: Motion, shapes: Shapes, fat: Vectors, h: float, later: float, speculative_margin: float
 ) -> bool:
@@ -46,18 +60,19 @@ def left(
 
     Now, or, if it moves on as it does, in a time h that is up to ``later`` [s] from now.
     """
-    position, linear, reach, radius = motion.position, motion.linear, shapes.reach[i], shapes.radius[i]
+    position, linear, reach = motion.position, motion.linear, shapes.reach[i]
     if shapes.vertices[i] == 0:
         return bool(fat[3, i] != 0.0)
     x, y = position[i, 0] - fat[0, i], position[i, 1] - fat[1, i]
     moved_x = max(abs(x), abs(x + later * linear[i, 0])) - abs(fat[6, i])
     moved_y = max(abs(y), abs(y + later * linear[i, 1])) - abs(fat[7, i])
-    ux, uy = linear[i, 0] * h, linear[i, 1] * h
-    ahead = math.sqrt(ux * ux + uy * uy) * (CORNERWISE if reach > radius else 1.0)
     turn, spin = motion.angle[i] - fat[2, i], motion.angular[i]
-    turned = min(max(abs(turn), abs(turn + later * spin)) + abs(spin) * h, 1.0) * (reach - radius)
-    needed = _touching_distance(reach, radius, shapes.thin[i], speculative_margin)
-    return not (max(moved_x, moved_y) + ahead + turned + needed <= fat[4, i] and reach == fat[3, i])
+    turned = max(abs(turn), abs(turn + later * spin)) + abs(spin) * h
+    reaches = _reaches(
+        max(moved_x, moved_y), turned, linear[i, 0] * h, linear[i, 1] * h, reach, shapes.radius[i],
+        shapes.thin[i], speculative_margin,
+    )  # fmt: skip
+    return not (reaches <= fat[4, i] and reach == fat[3, i])
 
 
 @kernel
@@ -83,12 +98,12 @@ def all_inside(motion: Motion, shapes: Shapes, fat: Vectors, h: float, speculati
     for i in range(len(angle)):  # no early exit, so that LLVM vectorises the loop
         moved_x = abs(places[2 * i] - fat[0, i]) - abs(fat[6, i])
         moved_y = abs(places[2 * i + 1] - fat[1, i]) - abs(fat[7, i])
-        ux, uy = velocities[2 * i] * h, velocities[2 * i + 1] * h
-        ahead = math.sqrt(ux * ux + uy * uy) * (CORNERWISE if reach[i] > radius[i] else 1.0)
-        turned = min(abs(angle[i] - fat[2, i]) + abs(angular[i]) * h, 1.0) * (reach[i] - radius[i])
-        needed = _touching_distance(reach[i], radius[i], thin[i], speculative_margin)
-        inside = (max(moved_x, moved_y) + ahead + turned + needed <= fat[4, i]) | (reach[i] == 0.0)
-        holds &= inside & (reach[i] == fat[3, i])
+        turned = abs(angle[i] - fat[2, i]) + abs(angular[i]) * h
+        reaches = _reaches(
+            max(moved_x, moved_y), turned, velocities[2 * i] * h, velocities[2 * i + 1] * h, reach[i],
+            radius[i], thin[i], speculative_margin,
+        )  # fmt: skip
+        holds &= ((reaches <= fat[4, i]) | (reach[i] == 0.0)) & (reach[i] == fat[3, i])
     return holds
 
 

@@ -15,7 +15,7 @@ from physicslab.kernels.forces.budget import book_open_spring, keep_pull
 from physicslab.kernels.forces.drag import drag_factor
 from physicslab.kernels.forces.force_calls import force_kernel
 from physicslab.kernels.forces.inverse_square import PLAIN_LIMIT, attract, inverse_cube
-from physicslab.kernels.forces.springs import mean_spring_pull, spring_pull, turn_over, turned
+from physicslab.kernels.forces.springs import mean_spring_pull, pull_ends, spring_pull, turn_over, turned
 
 
 @force_kernel
@@ -130,14 +130,7 @@ def _pull(q: Any, v: Any, span: float, force: Any, parameters: Any, indices: Any
         fx, fy, nx, ny, rate = spring_pull(dx, dy, vx, vy, rest, stiffness, damping)
     else:
         fx, fy, nx, ny, rate = mean_spring_pull(dx, dy, vx, vy, span, rest, stiffness, damping)
-    force[a] += fx
-    force[a + 1] += fy
-    force[b] -= fx
-    force[b + 1] -= fy
-    if turn_a >= 0:
-        force[turn_a] += give_a * (ax * fy - ay * fx)
-    if turn_b >= 0:
-        force[turn_b] -= give_b * (bx * fy - by * fx)
+    pull_ends(force, a, turn_a, b, turn_b, fx, fy, give_a, ax, ay, give_b, bx, by)
     slowed = damping * rate
     return fx, fy, slowed * nx, slowed * ny, slowed * rate, give_a * ax, give_a * ay, give_b * bx, give_b * by
 

@@ -9,7 +9,7 @@ end it is u + y.
 import math
 
 from physicslab.kernels.forces.force_calls import force_kernel
-from physicslab.kernels.forces.springs import turn_over, turned
+from physicslab.kernels.forces.springs import pull_ends, turn_over, turned
 
 
 @force_kernel
@@ -89,11 +89,4 @@ def damper_resistance(q, v, span, force, parameters, indices):  # type: ignore[n
             turning = along - (l1x * v1x + l1y * v1y) / end + (l0x * v0x + l0y * v0y) / start
             rate -= 0.5 * turning
         fx, fy = damping * rate * nx, damping * rate * ny
-        force[a] += fx
-        force[a + 1] += fy
-        force[b] -= fx
-        force[b + 1] -= fy
-        if turn_a >= 0:
-            force[turn_a] += give_a * (ax * fy - ay * fx)
-        if turn_b >= 0:
-            force[turn_b] -= give_b * (bx * fy - by * fx)
+        pull_ends(force, a, turn_a, b, turn_b, fx, fy, give_a, ax, ay, give_b, bx, by)

@@ -1,6 +1,7 @@
 """Springs and dampers."""
 
 import math
+from typing import Any
 
 from physicslab.kernels import Numbers, Rows, Vectors, always_inlined, kernel
 
@@ -10,6 +11,22 @@ def turned(angle: float, anchor_x: float, anchor_y: float) -> tuple[float, float
     """Return a local anchor [m] turned into the directions of the world."""
     c, s = math.cos(angle), math.sin(angle)
     return c * anchor_x - s * anchor_y, s * anchor_x + c * anchor_y
+
+
+@always_inlined
+def pull_ends(
+    force: Any, a: int, turn_a: int, b: int, turn_b: int, fx: float, fy: float, give_a: float, ax: float,
+    ay: float, give_b: float, bx: float, by: float,
+) -> None:  # fmt: skip
+    """Add a force on A [N], and its opposite on B, at arms (ax, ay), (bx, by) [m] of which a share acts."""
+    force[a] += fx
+    force[a + 1] += fy
+    force[b] -= fx
+    force[b + 1] -= fy
+    if turn_a >= 0:
+        force[turn_a] += give_a * (ax * fy - ay * fx)
+    if turn_b >= 0:
+        force[turn_b] -= give_b * (bx * fy - by * fx)
 
 
 @always_inlined

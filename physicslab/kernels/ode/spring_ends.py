@@ -7,12 +7,11 @@ from physicslab.kernels.float64x8 import (
     Wide,
     everywhere,
     put_numbers,
-    put_vectors,
     take,
     take_numbers,
     take_vectors,
 )
-from physicslab.kernels.ode.spring_flow import Links, Places
+from physicslab.kernels.ode.spring_flow import Links, Places, between, pull_middles
 from physicslab.kernels.wide_layout import WIDE
 
 type Arms = tuple[Wide, Wide, Wide, Wide]
@@ -98,9 +97,7 @@ def _turned(full: Full, rows: Rows, arm: Numbers, at: int) -> tuple[Wide, Wide]:
 @always_inlined
 def apart(places: Places, links: Links, full: Full, turns: bool, at: int) -> tuple[Wide, Wide, Arms]:
     """Return from where to where eight springs go, and where their ends are on turned bodies."""
-    xa, ya = take_vectors(places.place, links.a, at)
-    xb, yb = take_vectors(places.place, links.b, at)
-    dx, dy = xb - xa, yb - ya
+    dx, dy = between(places.place, links, at)
     ax = ay = bx = by = everywhere(0.0)
     if turns:
         ax, ay = _turned(full, links.a, full.arm_a, at)
@@ -114,9 +111,7 @@ def opening_of(
     linear: Vectors, angular: Numbers, links: Links, turns: bool, arms: Arms, at: int
 ) -> tuple[Wide, Wide]:
     """Return the velocities, or their derivatives, of the ends of eight springs at B against those at A."""
-    uxa, uya = take_vectors(linear, links.a, at)
-    uxb, uyb = take_vectors(linear, links.b, at)
-    ux, uy = uxb - uxa, uyb - uya
+    ux, uy = between(linear, links, at)
     if turns:
         ax, ay, bx, by = arms
         wa, wb = take_numbers(angular, links.a, at), take_numbers(angular, links.b, at)
@@ -129,10 +124,7 @@ def pull_ends(
     places: Places, links: Links, full: Full, turns: bool, arms: Arms, at: int, fx: Wide, fy: Wide
 ) -> None:
     """Add the pull of eight springs to both ends."""
-    pull_x, pull_y = take_vectors(places.pull, links.a, at)
-    put_vectors(places.pull, links.a, at, pull_x + fx, pull_y + fy)
-    pull_x, pull_y = take_vectors(places.pull, links.b, at)
-    put_vectors(places.pull, links.b, at, pull_x - fx, pull_y - fy)
+    pull_middles(places, links, at, fx, fy)
     if turns:
         ax, ay, bx, by = arms
         put_numbers(full.twist, links.a, at, take_numbers(full.twist, links.a, at) + (ax * fy - ay * fx))

@@ -11,7 +11,7 @@ from typing import NamedTuple
 from physicslab.kernels import Numbers, Rows, Vectors, always_inlined, inlined, inlined_by_numba
 from physicslab.kernels.accounts import ENERGY, GRAVITY, HAND, SPRINGS, book
 from physicslab.kernels.arguments import Motion, Springs
-from physicslab.kernels.float64x8 import choose, mask_bits, put_vectors, root, take, take_vectors
+from physicslab.kernels.float64x8 import Wide, choose, mask_bits, put_vectors, root, take, take_vectors
 from physicslab.kernels.wide_layout import WIDE
 
 TURNS_FAST = -1
@@ -98,13 +98,18 @@ def scatter(places: Places, motion: Motion, span: float) -> None:
 
 
 @always_inlined
+def between(vectors: Vectors, links: Links, at: int) -> tuple[Wide, Wide]:
+    """Return the vectors (rows, 2) at B less those at A, of eight springs."""
+    xa, ya = take_vectors(vectors, links.a, at)
+    xb, yb = take_vectors(vectors, links.b, at)
+    return xb - xa, yb - ya
+
+
+@always_inlined
 def _turn_fast(places: Places, links: Links, at: int, h: float) -> int:
     """Return which of eight springs turn too far, or change too much, in ``h`` seconds, as bits."""
-    xa, ya = take_vectors(places.place, links.a, at)
-    xb, yb = take_vectors(places.place, links.b, at)
-    uxa, uya = take_vectors(places.speed, links.a, at)
-    uxb, uyb = take_vectors(places.speed, links.b, at)
-    dx, dy, ux, uy = xb - xa, yb - ya, (uxb - uxa) * h, (uyb - uya) * h
+    (dx, dy), (vx, vy) = between(places.place, links, at), between(places.speed, links, at)
+    ux, uy = vx * h, vy * h
     far = ux * ux + uy * uy > (dx * dx + dy * dy) * (MAX_TURN * MAX_TURN)
     return mask_bits(far & (take(links.rest, at) > 0.0))
 
@@ -128,19 +133,22 @@ def still_followed(springs: Springs, finer: int) -> float:
 
 
 @always_inlined
-def _pull(places: Places, links: Links, at: int, followed: float) -> int:
-    """Add the pull of eight springs to both ends; return which are too short, as bits."""
-    xa, ya = take_vectors(places.place, links.a, at)
-    xb, yb = take_vectors(places.place, links.b, at)
-    dx, dy = xb - xa, yb - ya
-    length = root(dx * dx + dy * dy)
-    share = take(links.stiffness, at) * (length - take(links.rest, at)) / length
-    share = choose(length > 0.0, share, 0.0)
-    fx, fy = share * dx, share * dy
+def pull_middles(places: Places, links: Links, at: int, fx: Wide, fy: Wide) -> None:
+    """Add the pull of eight springs [N] to both ends."""
     pull_x, pull_y = take_vectors(places.pull, links.a, at)
     put_vectors(places.pull, links.a, at, pull_x + fx, pull_y + fy)
     pull_x, pull_y = take_vectors(places.pull, links.b, at)
     put_vectors(places.pull, links.b, at, pull_x - fx, pull_y - fy)
+
+
+@always_inlined
+def _pull(places: Places, links: Links, at: int, followed: float) -> int:
+    """Add the pull of eight springs to both ends; return which are too short, as bits."""
+    dx, dy = between(places.place, links, at)
+    length = root(dx * dx + dy * dy)
+    share = take(links.stiffness, at) * (length - take(links.rest, at)) / length
+    share = choose(length > 0.0, share, 0.0)
+    pull_middles(places, links, at, share * dx, share * dy)
     return mask_bits(length < followed * take(links.rest, at))
 
 

@@ -39,14 +39,14 @@ def _bar(
     return world.spawn(Transform((x, y), angle), Velocity(v, spin), mass, name=name or None)
 
 
-def _tip_error(world: World, name: str, arm: tuple[float, float], problem: str, i: int, rate: float) -> float:
+def _tip_error(world: World, name: str, arm: tuple[float, float], problem: str, i: int) -> float:
     """Return the largest error of a point of a body from the record, and of its velocity over a rate [m]."""
     body = world.entity(name)
     x, y = rotated(np.array(arm), world.component(body, Transform).angle)
     spin, at, how = world.component(body, Velocity).angular, place(world, name), velocity(world, name)
     keys = (number(problem, f"t={_MOMENTS[i]:.0f}", key) for key in ("x", "y", "vx", "vy"))
     found = at.x + x, at.y + y, how.x - spin * y, how.y + spin * x
-    scales = 1.0, 1.0, rate, rate
+    scales = 1.0, 1.0, _SWING, _SWING
     return max(float(abs(x - y)) / scale for x, y, scale in zip(found, keys, scales, strict=True))
 
 
@@ -94,7 +94,7 @@ def _four_bar_error(world: World, i: int) -> float:
     angles = [world.component(world.entity(f"crank{n}"), Transform).angle for n in range(3)]
     tilted = [world.component(world.entity(f"top{n}"), Transform).angle for n in range(2)]
     apart = max(*(abs(angle - angles[0]) for angle in angles), *(abs(angle) for angle in tilted))
-    return max(_tip_error(world, "crank0", (0.0, 0.5), "four_bar", i, _SWING), apart)
+    return max(_tip_error(world, "crank0", (0.0, 0.5), "four_bar", i), apart)
 
 
 def _slider_crank(simulation: SimulationConfig, spin: float, *, driven: bool) -> World:
@@ -178,7 +178,7 @@ def _links(name: str, title: str, links: int, angle: float, excellent: float, *,
         name=name, title=title, excellent=excellent, compared="x, y, vx, vy of its end after 1 and 10 s",
         measure="largest error of x, y and of vx, vy over sqrt(g / 1 m) [m]",
         build=lambda simulation: _chain(simulation, links, angle, bars=bars),
-        error=lambda world, i: _tip_error(world, "end", arm, name, i, _SWING),
+        error=lambda world, i: _tip_error(world, "end", arm, name, i),
     )  # fmt: skip
 
 

@@ -1,7 +1,7 @@
 """Meters and sliders: a number in large figures, and one that is changed between two values."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import partial
 from typing import Any
@@ -58,11 +58,11 @@ def build_title(ui: Ui, title: str, label: str, beside: float = 0.0) -> Iterator
         yield is_open
 
 
-def build_corners(ui: Ui, now: str, corners: Sequence[str]) -> str | None:
+def build_corners(ui: Ui, now: str) -> str | None:
     """Build a menu of corners; return the one that was chosen."""
     chosen = None
     with ui.menu("Place") as is_open:
-        for corner in corners if is_open else ():
+        for corner in CORNERS if is_open else ():
             if ui.item(corner.capitalize(), on=corner == now):
                 chosen = corner
     return chosen
@@ -172,7 +172,7 @@ def _build_menu(ui: Ui, world: World, window: Window, meter: MeterShown) -> None
 
     build_quantities(ui, world, window, [meter.key], change)
     ui.rule()
-    corner = build_corners(ui, meter.corner, CORNERS)
+    corner = build_corners(ui, meter.corner)
     if corner is not None:
         change(meter.key, corner)
     ui.item("Remove the meter", dashboard_actions.remove, meter.entity)
@@ -257,7 +257,7 @@ def _build_slider_menu(
         ui.refusal(refusal)
     ui.rule()
     _build_choice(ui, world, window, slider, change)
-    corner = build_corners(ui, slider.corner, CORNERS)
+    corner = build_corners(ui, slider.corner)
     if corner is not None:
         change(corner=corner)
     ui.item("Remove the slider", dashboard_actions.remove, slider.entity)
