@@ -5,6 +5,7 @@ import math
 from pathlib import Path
 
 import numpy as np
+import pygame
 import pytest
 from desk import Desk, bits
 
@@ -12,6 +13,7 @@ from physicslab.cli import main
 from physicslab.components import Drag, Mass, Spring, Transform, Velocity
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.files.scene import load_scene, save_scene
+from physicslab.history import SetField
 from physicslab.languages.language import language
 from physicslab.prefabs import box, circle
 from physicslab.state.masses import Diverged
@@ -190,7 +192,7 @@ def test_the_window_stays_open_on_the_last_good_state(boom: Path) -> None:
     assert bits(load_scene(boom / "boom-before-divergence.json")) == bits(desk.world)
     german = language("de").reword(desk.window.error)
     assert german.startswith("Angehalten: bob: Transform ist bei t = ")
-    assert german.endswith("R entfernt alles.")
+    assert german.endswith("Strg+Z nimmt die letzte Änderung zurück.")
     assert "nicht mehr endlich; ein kleineres dt" in german
     assert "zu sehen und als boom-before-divergence.json gespeichert" in german
     desk.key("space")
@@ -201,3 +203,16 @@ def test_the_window_stays_open_on_the_last_good_state(boom: Path) -> None:
     desk.key("space")
     desk.frames(5)
     assert [desk.window.pace.paused, desk.window.error] == [False, ""]
+
+
+def test_the_words_of_a_stop_go_with_the_edit_that_led_to_it(boom: Path) -> None:
+    desk = Desk(stiff_world(1.0))
+    desk.frames(3)
+    desk.window.edits.do(SetField(desk.world.entity("rope"), "Spring", "stiffness", 1e12))
+    desk.frames(60)
+    assert "bob" in desk.window.error and desk.window.pace.paused
+    desk.key("z", pygame.KMOD_CTRL)
+    desk.frames(2)
+    assert (
+        desk.window.error == "" and desk.world.component(desk.world.entity("rope"), Spring).stiffness == 1.0
+    )

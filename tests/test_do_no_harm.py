@@ -29,7 +29,7 @@ def test_escape_quits_only_a_while_after_something_was_closed(desk: Desk) -> Non
             tap(desk, "escape")
             assert not desk.window.closing
         assert "Esc again" in desk.window.notice
-    desk.frames(70)
+    desk.frames(190)
     tap(desk, "escape")
     assert desk.window.closing
 

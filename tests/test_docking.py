@@ -282,6 +282,20 @@ def test_what_is_docked_is_docked_at_the_next_start_and_a_key_puts_it_back(
     assert left == usual[0] and width < usual[2], "it stands at the right, as at first"
 
 
+def test_windows_that_were_shut_when_the_layout_was_reset_are_docked_after_the_next_start(
+    desk: Desk, tmp_path: Path
+) -> None:
+    tap(desk, "u")  # shut
+    tap(desk, "f7")
+    save_preferences(tmp_path / "preferences.json", desk.window)
+    again = sized(SIZE)
+    load_preferences(tmp_path / "preferences.json", again.window)
+    usual = again.sandbox.interface.room()
+    tap(again, "u")
+    left, _, width, _ = again.sandbox.interface.room()
+    assert left == usual[0] and width < usual[2]
+
+
 def test_a_window_that_was_docked_in_a_large_window_is_within_a_small_one(desk: Desk) -> None:
     room = desk.sandbox.interface.room()
     drag(desk, (rect_of(desk, "History").left + 40, rect_of(desk, "History").top + 10), (900, 640))

@@ -226,7 +226,7 @@ def test_f1_shows_every_key_and_escape_leaves_the_help_alone(desk: Desk) -> None
     tap(desk, "f1")
     tap(desk, "f1")
     assert not desk.window.help
-    desk.frames(70)  # more than a second: Esc is not for what was closed
+    desk.frames(190)  # more than three seconds: Esc is not for what was closed
     tap(desk, "escape")
     assert desk.window.closing
 

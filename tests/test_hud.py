@@ -309,7 +309,7 @@ def crowded(size: tuple[int, int], scale: float = 1.0) -> tuple[Desk, MeasuringC
     desk.window.notify("Saved /a/rather/long/directory/name/of/some/user/physicslab-20300101-120000.png")
     desk.window.error = (
         "Stopped: entity 12: Velocity is no longer finite at t = 1.23456789 s; a smaller dt or more substeps "
-        "may help. R clears all."
+        "may help. Ctrl+Z takes back the last edit."
     )
     desk.frames(8)
     canvas.words.clear()

@@ -499,7 +499,7 @@ def test_the_friction_and_the_restitution_of_a_pair_are_written() -> None:
     for level in ("Explore", "Measure"):
         desk.window.level = level
         desk.frames(SETTLED)
-        assert "With slope: mu = 0.5, e = 0" in desk.ui.words
+        assert "With slope: μ = 0.5, e = 0" in desk.ui.words
 
 
 def test_a_body_has_its_colour_in_the_microscope() -> None:

@@ -321,15 +321,16 @@ def test_with_the_circle_in_hand_a_click_on_a_ruler_makes_no_circle(desk: Desk) 
 
 
 def test_erase_and_next_and_the_inspector(desk: Desk) -> None:
+    floor = box(desk.world, (-3, 0), width=1, height=0.2, static=True)
     ball = circle(desk.world, (-3, 2), radius=0.2)
     ruler, gate = placed(desk, Ruler((-2, 0), (2, 0)), Gate((-2, -1), (2, -1)))
-    for expected in (ball, ruler, gate):
+    for expected in (ball, floor, ruler, gate):
         tap(desk, "n")
         assert desk.window.selection.entities == (expected,)
     assert "gate" in desk.ui.words and "Can move" not in desk.ui.words
     click(desk, "Erase")
     tap_at(desk, 0.5, 0.0)
-    assert desk.world.entities() == [ball, gate]
+    assert desk.world.entities() == [floor, ball, gate]
 
 
 # ---- notes -------------------------------------------------------------------------------------------------

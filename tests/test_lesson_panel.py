@@ -10,7 +10,9 @@ from pathlib import Path
 
 import pygame
 import pytest
-from desk import SETTLED, Desk, bits, click, fill, middle_of, point, sized, tap, write
+from desk import SETTLED, Desk, bits, click, empty_world, fill, middle_of, point, sized, tap, write
+from recording import RecordingCanvas
+from test_arrows import lines_in
 
 from physicslab.components import Mass, Transform
 from physicslab.files.scene import load_scene
@@ -20,6 +22,7 @@ from physicslab.lessons.lesson import Lesson
 from physicslab.prefabs import circle
 from physicslab.view.controls.controls import CONTROLS
 from physicslab.view.controls.lesson_actions import choose_language, open_lesson
+from physicslab.view.overlay.arrows import FORCE
 from physicslab.view.window.lesson import OpenLesson
 
 FALL = """---
@@ -149,6 +152,42 @@ def test_a_run_is_shut_until_all_is_predicted(desk: Desk) -> None:
     tap(desk, "space")
     desk.frames(20)
     assert desk.world.time > 0.0 and desk.window.lesson.made(desk.window.lesson.trial.run)  # type: ignore[union-attr]
+
+
+def test_forces_are_shown_once_all_is_predicted(desk: Desk) -> None:
+    canvas = RecordingCanvas((1280, 720))
+    seen = Desk(empty_world(), canvas)
+    lesson = opened(seen)
+    seen.window.selection.take(seen.world.entity("ball"))
+
+    def drawn() -> tuple[int, bool, bool]:
+        seen.frames()
+        canvas.calls.clear()
+        seen.frames()
+        arrows = lines_in(canvas, FORCE.colour(seen.window.theme))
+        return len(arrows), "after your prediction" in canvas.words, bool(seen.window.measured.forces)
+
+    before, later, named = drawn()
+    assert later and not named
+    for name, answer in (
+        ("faster", {"choice": 2}),
+        ("speed", {"value": "1"}),
+        ("path", {"curve": [[0, 5], [0.1, 4]]}),
+    ):
+        question = next(one for one in lesson.lesson.questions("predict") if one.name == name)
+        assert lesson.answer(name, question, {**answer, "sure": "sure"}) == ""
+    after, later, named = drawn()
+    assert after > before and named and not later
+
+
+def test_sources_are_named_by_their_authors(desk: Desk, tmp_path: Path) -> None:
+    source = "source: doe2001 = Doe, Roe and Poe (2001), On heaps, Annals 3, 141"
+    text = FALL.replace("minutes: 10", f"minutes: 10\n{source}").replace(
+        "## Level 1", "So says [doe2001].\n\n## Level 1"
+    )
+    (tmp_path / "fall.md").write_text(text)
+    opened(desk)
+    assert "So says (Doe et al. 2001)." in desk.ui.words
 
 
 def test_what_helps_to_see_and_hear_is_not_shut(desk: Desk) -> None:

@@ -15,6 +15,7 @@ from physicslab.files.scene import load_scene
 from physicslab.prefabs import box, circle
 from physicslab.theme import DARK, Colour
 from physicslab.view.canvas.camera import Camera, Drawing
+from physicslab.view.canvas.canvas import Rect, overlap
 from physicslab.view.canvas.quantities import quantity
 from physicslab.view.overlay.contact_samples import SHOWN, resting_of
 from physicslab.view.overlay.impulses import CROWD, LABELLED, LABELLED_IN_CROWD
@@ -205,6 +206,36 @@ def test_labels_lie_apart_and_stay_where_they_are() -> None:
             for x2, y2, w2, h2 in every[n + 1 :]:
                 assert x + w <= x2 or x2 + w2 <= x or y + h <= y2 or y2 + h2 <= y
     assert len(places[0]) == 10 and places[0] == places[1]
+
+
+def test_numbers_of_forces_and_impulses_lie_apart() -> None:
+    world = empty_world()
+    box(world, (0, -0.5), width=10, height=1, static=True)
+    box(world, (-0.3, 0.25), width=0.5, height=0.5)
+    box(world, (0.3, 0.25), width=0.5, height=0.5)
+    top = box(world, (0, 0.75), width=0.5, height=0.5)
+    desk, canvas = shown(world, "v", "e", frames=30, paused=False)
+    desk.window.selection.take(top)
+    desk.key("space")
+    desk.frames(3)
+    overlays = desk.window.overlays
+    canvas.calls.clear()
+    desk.frames()
+    written = [(call["words"], call["at"]) for call in canvas.called("text")]
+    assert len([one for one, _ in written if one.startswith("normal ")]) >= 2
+    assert len([one for one, _ in written if one.startswith("normal, from")]) == 2
+    panels = [call["rect"] for call in canvas.called("panel")]
+    around = [
+        next(rect for rect in panels if inside(rect, at))
+        for words, at in written if words.startswith(("normal", "weight", "friction"))
+    ]  # fmt: skip
+    rects = sorted(set(around))
+    assert overlays.arrows and overlays.impulses and len(rects) >= 5
+    assert not any(overlap(one, other) for n, one in enumerate(rects) for other in rects[n + 1 :])
+
+
+def inside(rect: Rect, at: tuple[int, int]) -> bool:
+    return rect[0] <= at[0] < rect[0] + rect[2] and rect[1] <= at[1] < rect[1] + rect[3]
 
 
 def test_clearing_drops_impacts() -> None:

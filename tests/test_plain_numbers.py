@@ -101,5 +101,5 @@ def test_two_bodies_have_the_numbers_of_their_pair() -> None:
     world = empty_world()
     one = circle(world, (0.0, 0.0), restitution=0.9, friction=0.25)
     desk = bench(world, one, box(world, (2.0, 0.0), restitution=0.5, friction=1.0))
-    assert desk.ui.rows["mu of the pair"] == "0.5" and desk.ui.rows["e of the pair"] == "0.5"
+    assert desk.ui.rows["μ of the pair"] == "0.5" and desk.ui.rows["e of the pair"] == "0.5"
     pygame.display.quit()

@@ -521,17 +521,17 @@ def test_at_most_three_are_said_and_the_rest_counted() -> None:
 def test_an_error_smaller_than_two_rims_is_no_warning_to_a_pupil() -> None:
     canvas = RecordingCanvas((800, 600))
     on = Drawing(canvas, Camera(canvas.size, scale=100.0), THEMES[0], 12)
-    for off, plainly, drawn in (
+    for off, seen_only, drawn in (
         (1.7e-4, True, False),
         (1.7e-4, False, True),
         (6e-3, True, False),
         (4e-2, True, True),
     ):
         advice = [ModelWarning(None, "contacts are soft", off, "m", 0.0, "")]
-        rect = draw_advice(advice, (100, 50, 600, 500), on, plainly=plainly)
+        rect = draw_advice(advice, (100, 50, 600, 500), on, plainly=True, seen_only=seen_only)
         assert (rect is not None) is drawn
     beyond = [ModelWarning(None, "a joint gives way", 1e-4, "m", 1e-5, "")]
-    assert draw_advice(beyond, (100, 50, 600, 500), on, plainly=True) is not None
+    assert draw_advice(beyond, (100, 50, 600, 500), on, seen_only=True) is not None
 
 
 def test_of_warnings_without_a_limit_the_largest_is_kept() -> None:

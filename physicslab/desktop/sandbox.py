@@ -84,6 +84,7 @@ class Sandbox:
         self._autosave = autosave
         self._reported = False  # that the state cannot be kept
         self._rescued: tuple[World, float] | None = None
+        self._stopped: tuple[object, ...] | None = None  # the state from which no step could be made
         self._rested = self._undrawn = 0.0  # how long nothing has moved, or was drawn [s]
         self._owed = 0.0  # time that is to be shown of steps that were made once [s]
         self._places = np.empty((0, 3))
@@ -143,7 +144,7 @@ class Sandbox:
             restore_desk(window, world.desk)
         if not is_again and any(len(world.batch(kind)) for kind in (*INSTRUMENTS, Graph, Meter, Slider)):
             window.tool = SELECT.name  # a stray click is to make nothing in an experiment
-        window.error, window.scenes.next_world = "", None
+        window.scenes.next_world = None
         window.framing.go_home(world)
         window.overlays.begin(world, window.camera)
         window.scenes.saved = Changes()
@@ -160,6 +161,8 @@ class Sandbox:
         self.world.frame(Stage.INPUT, elapsed)
         if self.window.scenes.next_world is not None:
             self._go_on_to(self.window.scenes.next_world)
+        if self._stopped not in (None, self._moment):
+            self.window.error, self._stopped = "", None
         self._advance()
         self.window.filming.advance(self.history)
         self._follow_entities()
@@ -174,6 +177,11 @@ class Sandbox:
         if self._autosave is not None:
             self._keep(self._autosave)
         return drawn
+
+    @property
+    def _moment(self) -> tuple[object, ...]:
+        """The state that is shown: another after a step, an edit, or one taken back."""
+        return self.world, self.world.time, self.world.motion_edits
 
     def _follow_entities(self) -> None:
         """Let go of what is not there any more: in the past steps make and remove bodies."""
@@ -280,8 +288,9 @@ class Sandbox:
                     break
         except Diverged as error:
             pace.halt()
-            why = Sentence("Stopped: {why}. {rescue} R clears all.", why=error.args[0], rescue=self._rescue())
-            self.window.error = why
+            told = "Stopped: {why}. {rescue} Ctrl+Z takes back the last edit."
+            self.window.error = Sentence(told, why=error.args[0], rescue=self._rescue())
+            self._stopped = self._moment
         else:
             pace.done(made, dt)
             if made and (slow := self._watch.note(made, self._worked() - worked)):

@@ -183,7 +183,8 @@ class _Page:
         for name in names:
             unit, values, start = self._values(lesson, run, name, _VALUES[len(names) - 1], dict(least.values))
             note = lesson.setup.notes.get(name, "")
-            label = f"{name}, {note}" if note else name
+            symbol = words.formula(self.own, name)
+            label = f"{symbol}, {note}" if note else symbol
             shown = "" if unit == "1" else words.formula(self.own, f"1 {unit}")[1:].strip()
             sliders.append({"label": label, "unit": shown, "values": values, "start": start, "name": name})
             texts.append([f"{value!r} {'' if unit == '1' else unit}".strip() for value in values])

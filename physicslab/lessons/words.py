@@ -1,6 +1,8 @@
 """The words of a lesson that are the program's own, in the lesson's language."""
 
 import re
+from collections.abc import Mapping
+from unicodedata import lookup
 
 from physicslab.languages.language import Language
 from physicslab.lessons.lesson import Compare, Lesson, Run
@@ -13,6 +15,15 @@ _SIGNS = tuple(
         (r"\s*\*\s*", " · "), ("<=", "≤"), (">=", "≥"), ("!=", "≠"),
     )
 )  # fmt: skip
+_LETTERS = (
+    "alpha", "beta", "gamma", "delta", "epsilon", "eta", "theta", "kappa", "mu", "nu", "rho", "sigma", "tau",
+    "phi", "chi", "psi", "omega",
+)  # fmt: skip
+_GREEK = {name: lookup(f"GREEK SMALL LETTER {name}") for name in _LETTERS}
+_GREEK["th"] = _GREEK["theta"]
+_SYMBOL = re.compile(rf"(?<![\w.])({'|'.join(_GREEK)}|[A-Za-z])(\d?)(?![\w.(])")
+"""A name of one letter, Greek or Latin, with an index or without."""
+_LOWERED = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 _POWER = re.compile(r"\^(-?\d+)\b")
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
@@ -65,10 +76,34 @@ def formula(language: Language, text: str) -> str:
 
     >>> formula(Language("de"), "2*pi*sqrt(rod/(9.81 m/s^2)) <= 0.5 s"), formula(Language("en"), "30 deg")
     ('2 · π · √(rod/(9,81 m/s²)) ≤ 0,5 s', '30°')
+    >>> formula(Language("en"), "v0^2*sin(2*th)/gravity"), formula(Language("en"), "mu = m1")
+    ('v₀² · sin(2 · θ)/gravity', 'μ = m₁')
     """
     for pattern, sign in _SIGNS:
         text = pattern.sub(sign, text)
+    text = _SYMBOL.sub(lambda found: _GREEK.get(found[1], found[1]) + found[2].translate(_LOWERED), text)
     return language.decimal(_POWER.sub(lambda found: found[1].translate(_RAISED), text))
+
+
+_SOURCE = re.compile(r"([^(]+?) \((\d{4})\)")
+_AUTHORS = re.compile(r", | and ")
+_TWO = 2
+"""More authors than that are the first and others."""
+
+
+def cited(text: str, sources: Mapping[str, str]) -> tuple[str, str]:
+    """Return a text with the authors and the year in place of the keys of its sources, and these in full.
+
+    >>> cited("So it is [doe2001].", {"doe2001": "Doe, Roe and Poe (2001), On heaps, Annals 3, 141"})
+    ('So it is (Doe et al. 2001).', 'Doe, Roe and Poe (2001), On heaps, Annals 3, 141')
+    """
+    used = {key: words for key, words in sources.items() if f"[{key}]" in text}
+    for key, words in used.items():
+        if found := _SOURCE.match(words):
+            authors = _AUTHORS.split(found[1])
+            short = found[1] if len(authors) <= _TWO else f"{authors[0]} et al."
+            text = text.replace(f"[{key}]", f"({short} {found[2]})")
+    return text, "; ".join(used.values())
 
 
 def condition(language: Language, text: str) -> str:

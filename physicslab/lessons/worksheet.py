@@ -38,7 +38,8 @@ def _body(lesson: Lesson, recalled: Mapping[str, Question]) -> Iterator[str]:
     for name, expression in setup.parameters.items():
         note, span = setup.notes.get(name, ""), setup.opened.get(name)
         may = own.say("{least} to {most}", least=span[0], most=span[1]) if span else ""
-        called = f"{name}, {note}" if note else name
+        symbol = words.formula(own, name)
+        called = f"{symbol}, {note}" if note else symbol
         yield _row("td", (called, words.formula(own, expression.text), words.formula(own, may)))
     yield "</table>"
     for step in lesson.steps:

@@ -11,6 +11,8 @@ ROUNDING = 1e-12
 """Share of what a number is a part of below which it is rounding."""
 _LEAST_ERROR, _PLAIN = 1e-12, 3
 """Share of a value from which its error is written, and powers of ten that need no exponent."""
+_LARGE, _DECIMALS = 1e6, 7
+"""Coordinates from so many metres on, or with more decimals, are written with a power of ten."""
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _OF_TEN = re.compile(r"(?<![\w.,])(\d[\d.,]*)e(-?)\+?0*(\d+)(?= ([^\W\d_]+|[%°]))")
 """A power of ten, and the word behind it."""
@@ -100,6 +102,22 @@ def round_quantity(value: float, unit: str) -> str:
     ('-1·10⁻⁹ J', '0 m')
     """
     return f"{_figures(value, 0, slack=1e-12)} {unit}"
+
+
+def coordinate(value: float, step: float) -> str:
+    """Return one of numbers that lie a step apart, with the digits that neighbours differ by.
+
+    >>> coordinate(-0.0, 2.0), coordinate(6.44, 0.04), coordinate(-1e6, 1e6), coordinate(1234567.2, 0.4)
+    ('0', '6.44', '-1·10⁶', '1.2345672·10⁶')
+    """
+    decimals = max(-math.floor(math.log10(step) + 1e-9), 0)
+    if value == 0.0 and decimals > _DECIMALS:
+        return "0"
+    if abs(value) < _LARGE and decimals <= _DECIMALS:
+        return f"{value + 0.0:.{decimals}f}"
+    behind = max(math.floor(math.log10(abs(value))) - math.floor(math.log10(step) + 1e-9), 0)
+    digits, _, exponent = f"{value:.{behind}e}".partition("e")
+    return f"{digits}·10{str(int(exponent)).translate(_RAISED)}"
 
 
 def vector_quantity(value: Vector2, unit: str) -> str:

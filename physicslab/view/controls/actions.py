@@ -26,7 +26,7 @@ from physicslab.view.window.tour import Search, Tour
 from physicslab.view.window.window import OPENED, Action, Window
 from physicslab.world import World
 
-_AFTER_CLOSING = 1.0
+_AFTER_CLOSING = 3.0
 """How long [s] after something was closed Esc does not quit."""
 _ZOOM_STEP = 3.0
 """How many notches of the wheel a key or a button zooms by."""
@@ -69,7 +69,6 @@ def clear(world: World, window: Window) -> None:
         window.notify("Cleared: one Ctrl+Z brings all back", 5.0)
     window.overlays.forget()
     window.sparks.clear()
-    window.error = ""
 
 
 def toggle_gravity(world: World, window: Window) -> None:
@@ -200,13 +199,14 @@ def select_all(world: World, window: Window) -> None:
 
 
 def select_next(world: World, window: Window) -> None:
-    """Select the body after the one that is selected, in their order."""
-    bodies = sorted(
-        {*world.batch(Transform).entities.tolist(), *(one.entity for one in instruments_of(world))}
-    )
-    now = window.selection.entities[-1] if window.selection.entities else 0
-    if bodies:
-        window.selection.take(next((entity for entity in bodies if entity > now), bodies[0]))
+    """Select the body after the one that is selected, those that move first, and then instruments."""
+    found = {*world.batch(Transform).entities.tolist(), *(one.entity for one in instruments_of(world))}
+    moving = set(world.batch(Transform, Velocity).entities.tolist())
+    order = sorted(found, key=lambda entity: (entity not in moving, entity))
+    chosen = window.selection.entities
+    if order:
+        now = order.index(chosen[-1]) if chosen and chosen[-1] in order else -1
+        window.selection.take(order[(now + 1) % len(order)])
 
 
 def _changed(world: World, window: Window, name: str, by: Vector2 | float) -> list[Command]:

@@ -184,15 +184,15 @@ _SEEN = 3.0
 
 
 def draw_advice(
-    advice: Sequence[ModelWarning], room: Rect, on: Drawing, *, plainly: bool = False
+    advice: Sequence[ModelWarning], room: Rect, on: Drawing, *, plainly: bool = False, seen_only: bool = False
 ) -> Rect | None:
     """Write what is not to be trusted, in the middle at the top of a room [px]; return where [px].
 
-    The worst comes first, and ``plainly`` alone; what is beyond a limit comes before what has none. Errors of
-    places without a limit that cannot be seen in the picture are left out ``plainly``. Without a warning, or
-    room for it, nothing is drawn.
+    The worst comes first, and ``plainly`` alone; what is beyond a limit comes before what has none. With
+    ``seen_only`` errors of places without a limit that cannot be seen in the picture are left out. Without a
+    warning, or room for it, nothing is drawn.
     """
-    if plainly:
+    if seen_only:
         scale = on.camera.scale
         advice = [
             one for one in advice if one.limit != 0.0 or one.unit != "m" or one.excess[1] * scale >= _SEEN

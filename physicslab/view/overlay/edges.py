@@ -11,7 +11,7 @@ from physicslab.ecs.vector import Vector2
 from physicslab.state.shapes import lengths_of
 from physicslab.view.canvas.camera import Camera, Drawing
 from physicslab.view.canvas.canvas import Canvas, Rect, TextStyle, overlap
-from physicslab.view.canvas.quantities import round_quantity
+from physicslab.view.canvas.quantities import coordinate, round_quantity
 from physicslab.view.picture.backdrop import grid_spacing
 from physicslab.world import World
 
@@ -55,46 +55,49 @@ _MAX_LINES = 400
 """In a picture with more lines than that, which would be a speck, none has."""
 
 
-def draw_axis_numbers(on: Drawing, room: Rect, right: int, windows: Sequence[Rect]) -> tuple[int, list[Rect]]:
+def _number_style(on: Drawing) -> TextStyle:
+    return TextStyle(max(on.size - 3, 9), on.theme.coordinate)
+
+
+def axis_numbers_height(on: Drawing) -> int:
+    """Return how high the coordinates at the lower edge of a room are [px]."""
+    return on.canvas.text_size("0", _number_style(on))[1] + 2
+
+
+def draw_axis_numbers(on: Drawing, room: Rect, right: int, taken: Sequence[Rect]) -> list[Rect]:
     """Write the coordinates [m] of lines of the grid at the lower and the left edge of a room [px].
 
-    Those at the lower edge end before ``right`` [px], where the scale bar begins; none is partly under one of
-    the ``windows``. Return how high they are there, and where each is [px].
+    Those at the lower edge end before ``right`` [px], where the scale bar begins; none is partly under what
+    is ``taken``. Return where each is [px].
     """
     left, top, width, height = room
     step = _EVERY * grid_spacing(on.camera.scale)
     low, high = on.camera.to_world((left, top + height)), on.camera.to_world((left + width, top))
-    style = TextStyle(max(on.size - 3, 9), on.theme.coordinate)
+    style = _number_style(on)
     text_height = on.canvas.text_size("0", style)[1]
     written: list[Rect] = []
 
     def write(words: str, x: int, y: int) -> None:
         extent = on.canvas.text_size(words, style)
-        if not any(overlap(window, (x, y, *extent)) for window in windows):
+        if not any(overlap(one, (x, y, *extent)) for one in taken):
             on.canvas.text(words, (x, y), style)
             written.append((x, y, *extent))
 
     for x in _multiples(low.x, high.x, step):
         place = round(on.camera.to_screen(Vector2(x, on.camera.centre.y))[0])
-        words = _words(x, step)
+        words = coordinate(x, step)
         if left + on.size < place and place + on.canvas.text_size(words, style)[0] + on.size // 2 < right:
             write(words, place + 3, top + height - text_height - 2)
     for y in _multiples(low.y, high.y, step):
         place = round(on.camera.to_screen(Vector2(on.camera.centre.x, y))[1])
         if top + 2 * text_height < place < top + height - 2 * text_height:
-            write(_words(y, step), left + 4, place - text_height - 1)
-    return text_height + 2, written
+            write(coordinate(y, step), left + 4, place - text_height - 1)
+    return written
 
 
 def _multiples(low: float, high: float, step: float) -> list[float]:
     first, last = math.ceil(low / step), math.floor(high / step)
     return [] if last - first > _MAX_LINES else (step * np.arange(first, last + 1)).tolist()
-
-
-def _words(value: float, step: float) -> str:
-    """Return a coordinate with the digits that its neighbours differ by."""
-    decimals = max(-math.floor(math.log10(step) + 1e-9), 0)
-    return f"{value + 0.0:.{decimals}f}" if abs(value) < 1e6 and decimals < 7 else f"{value:g}"
 
 
 # ---- bodies out of sight: none that was thrown away is lost silently ---------------------------------------

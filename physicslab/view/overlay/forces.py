@@ -10,6 +10,7 @@ from physicslab.diagnostics.present_forces import with_present_forces
 from physicslab.ecs.vector import Vector2
 from physicslab.languages.sentence import Sentence
 from physicslab.view.canvas.camera import Drawing
+from physicslab.view.canvas.canvas import Rect
 from physicslab.view.canvas.quantities import quantity
 from physicslab.view.overlay import arrows
 from physicslab.view.overlay.contact_samples import resting_of
@@ -22,7 +23,10 @@ NORMAL_LENGTH = 26.0
 
 
 def draw_vectors(world: World, overlays: Overlays, on: Drawing) -> None:
-    """Draw the velocity of each body that moves, the sum of the forces on it, and the normals of contacts."""
+    """Draw the velocity of each body that moves, the sum of the forces on it, and the normals of contacts.
+
+    Forces are left out while a prediction is awaited.
+    """
     applied = free_body.applied_forces(world)
     force = applied + free_body.joint_forces(world) + free_body.contact_forces(world)
     rows = world.batch(Transform, Velocity).rows
@@ -37,7 +41,8 @@ def draw_vectors(world: World, overlays: Overlays, on: Drawing) -> None:
     pull = strength * world.bodies.inverse_mass[pulled] * world.simulation.dt
     speed = np.concatenate((np.hypot(linear[:, 0], linear[:, 1]), pull))
     overlays.velocity.follow(speed, overlays.reach, world.time)
-    overlays.force.draw(world.table(Transform)["position"][pulled], force, arrows.FORCE, on)
+    if not overlays.awaits_prediction:
+        overlays.force.draw(world.table(Transform)["position"][pulled], force, arrows.FORCE, on)
     overlays.velocity.draw(position, linear, arrows.VELOCITY, on, parts=overlays.parts)
     contacts = resting_of(with_present_forces(world))
     contacts = contacts[contacts["normal"] > 0.0]
@@ -122,8 +127,9 @@ _REACH = 0.16
 
 
 def draw_free_body(
-    forces: Sequence[free_body.NamedForce], moved: Vector2, time: float, overlays: Overlays, on: Drawing
-) -> None:
+    forces: Sequence[free_body.NamedForce], moved: Vector2, time: float, overlays: Overlays,
+    covered: Sequence[Rect], on: Drawing,
+) -> list[Rect]:  # fmt: skip
     """Draw the forces on a body as arrows that end with their names and sizes; one scale for all of them.
 
     Parameters
@@ -134,14 +140,21 @@ def draw_free_body(
         How far the body has come since [m].
     time : float
         Time of the world [s].
+    covered : sequence of Rect
+        Rectangles that names keep clear of [px].
+
+    Returns
+    -------
+    list of Rect
+        Where the names are [px].
     """
     gauge: Gauge = overlays.body_force
     sizes = np.array([one.force.magnitude for one in forces])
     gauge.follow(sizes, _REACH * min(on.camera.size) / on.camera.scale, time)
     if not len(forces) or not gauge.per_metre:
-        return
+        return []
     labels = [_draw(one, moved, n, gauge, on) for n, one in enumerate(forces)]
-    overlays.force_labels.draw(labels, overlays.covered, on)
+    return list(overlays.force_labels.draw(labels, covered, on).values())
 
 
 def _draw(one: free_body.NamedForce, moved: Vector2, number: int, gauge: Gauge, on: Drawing) -> Label:

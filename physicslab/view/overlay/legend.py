@@ -113,6 +113,8 @@ class Overlays:
         Whether centres of mass are shown, momenta, and the parts of arrows along x and y.
     keeps_scales : bool
         Whether the scales of arrows stay as they are.
+    awaits_prediction : bool
+        Whether forces and impulses are left out: a lesson's reader is to say first what will happen.
     reach : float
         The wanted length of the strongest arrow [m], chosen when a world is shown or an overlay turned on.
     velocity, force, impact, rest : Gauge
@@ -131,7 +133,7 @@ class Overlays:
 
     def __init__(self) -> None:
         self.arrows = self.impulses = self.keeps_scales = False
-        self.centres = self.momenta = self.parts = False
+        self.centres = self.momenta = self.parts = self.awaits_prediction = False
         self.reach = 1.0
         self.velocity, self.force = Gauge("m/s"), Gauge("N")
         self.impact, self.rest = Gauge("N s"), Gauge("N s")
@@ -243,16 +245,18 @@ def _rows(overlays: Overlays) -> tuple[list[Row], list[str]]:
     rows: list[Row] = []
     remarks = []
     if overlays.arrows:
+        force = "after your prediction" if overlays.awaits_prediction else overlays.force.words
         rows += [
             (Sample(arrows.VELOCITY), arrows.VELOCITY.name, overlays.velocity.words),
-            (Sample(arrows.FORCE), arrows.FORCE.name, overlays.force.words),
+            (Sample(arrows.FORCE), arrows.FORCE.name, force),
             (
                 Sample(arrows.CONTACT_NORMAL, arrows.CONTACT_NORMAL.width),
                 arrows.CONTACT_NORMAL.name,
                 "direction only",
             ),
         ]
-        remarks.append("Select a body to see each of the forces on it.")
+        if not overlays.awaits_prediction:
+            remarks.append("Select a body to see each of the forces on it.")
     if overlays.momenta:
         rows.append((Sample(arrows.MOMENTUM), arrows.MOMENTUM.name, overlays.momentum.words))
     if overlays.impulses:

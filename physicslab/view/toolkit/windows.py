@@ -40,6 +40,8 @@ NARROW = 6.0
 """Padding of panels that hold buttons alone [px]."""
 _TITLE = 6.0
 """Height of what a floating window has above what fills it, at most, in heights of the text."""
+_SECTION, _WINDOW = re.compile(r"^(?=\[)", re.MULTILINE), re.compile(r"\[Window\]\[(.*)\]\n")
+"""A part of where windows lie begins with that; one of a window with its name."""
 _UNSEEN = "\u200b"
 """A space without width: it parts two signs ``#`` that Dear ImGui would take for a mark of its own."""
 
@@ -152,6 +154,18 @@ class Windows:
             return imgui.Cond_.first_use_ever
         self._moved.add(name)
         return imgui.Cond_.always
+
+    def arranged(self, arrangement: str) -> str:
+        """Return where windows lie without those that are shut since all are where they are at first.
+
+        Dear ImGui would have them float over the world from the next start on.
+        """
+        if self._moved is None:
+            return arrangement
+        shown = (str(window.name) for window in imgui.get_current_context().windows if window.was_active)
+        put = {name.rpartition("###")[2] for name in (*self._moved, *shown)}
+        parts = _SECTION.split(arrangement)
+        return "".join(part for part in parts if (found := _WINDOW.match(part)) is None or found[1] in put)
 
     def said(self, words: str) -> str:
         """Return words in the language of the window, as they can be drawn."""

@@ -13,7 +13,7 @@ type Stamp = tuple[int, int, int]
 """Time of writing [ns], bytes and number of a file: another program that writes it changes one of them."""
 
 
-def _here() -> Path:
+def working_folder() -> Path:
     """Return the working directory, or the root where it was removed."""
     try:
         return Path.cwd()
@@ -25,7 +25,7 @@ def _here() -> Path:
 class Opening(Naming):
     """The name of a file that is to be opened, and the folder that is listed."""
 
-    folder: Path = field(default_factory=_here)
+    folder: Path = field(default_factory=working_folder)
 
 
 @dataclass(frozen=True, slots=True)

@@ -143,7 +143,7 @@ def _friction(collision: Collision, result: Result, before: float, after: float)
     if result.sticks:
         return "It sticks: friction is strong enough to stop the sliding at the contact."
     return (
-        f"It slides: friction is at its limit, mu = {collision.friction:.3g} times the normal impulse, and "
+        f"It slides: friction is at its limit, μ = {collision.friction:.3g} times the normal impulse, and "
         f"the sliding goes from {quantity(before, 'm/s')} to {quantity(after, 'm/s')}."
     )
 
@@ -242,7 +242,7 @@ def _impulses_of_one(collision: Collision, result: Result) -> list[Step]:
     gained = f"(1 + {_number(e)})·{_number(-vn)}"
     if collision.law == ENERGETIC:
         words = "Stronge's law: work given back = e² of the work taken"
-        ways = (("v_n, v_t, m_n, m_t, c, e, mu", "by parts: sliding, sticking, sliding back"),) * 2
+        ways = (("v_n, v_t, m_n, m_t, c, e, μ", "by parts: sliding, sticking, sliding back"),) * 2
     elif result.sticks and c:
         words = "It sticks: v_n' = -e v_n and v_t' = 0, two equations for two impulses"
         ways = (
@@ -254,10 +254,10 @@ def _impulses_of_one(collision: Collision, result: Result) -> list[Step]:
     elif c and tangent:
         sign = math.copysign(1.0, tangent)
         shown = "+" if sign > 0.0 else "-"
-        words = "It slides: friction is mu J_n, and changes v_n through the coupling"
+        words = "It slides: friction is μ J_n, and changes v_n through the coupling"
         ways = (
             (
-                f"J_n = -(1+e) v_n / (1/m_n {shown} mu c)",
+                f"J_n = -(1+e) v_n / (1/m_n {shown} μ c)",
                 f"{gained} / ({kn:.4g} {shown} {mu:.4g}·{_number(c)})",
             ),
             (f"J_t = {shown}mu J_n", f"{shown}{mu:.4g}·{normal:.4g}"),
@@ -289,7 +289,7 @@ def _impulses_of_two(collision: Collision, result: Result) -> list[Step]:
     ways = (
         ("J_1/m_1 + k J_2 + c_1 J_t = -(1+e) v_1, and so for the other",
          " + ".join(quantity(one, "N s") for one in result.normal)),
-        ("J_t stops the sliding, within ±mu (J_1 + J_2)",
+        ("J_t stops the sliding, within ±μ (J_1 + J_2)",
          f"|J_t| ≤ {collision.friction:.4g}·{sum(result.normal):.4g}"),
     )  # fmt: skip
     return [*steps, *_compared(collision, result, words, ways)]

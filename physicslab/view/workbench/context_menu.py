@@ -79,7 +79,7 @@ def _of_bodies(ui: Ui, world: World, window: Window) -> None:
         for name in materials(world) if shown else ():
             if name is not None:
                 on = {made_of(world, entity) for entity in chosen} == {name}
-                tip = SUBSTANCES[name].source if name in SUBSTANCES else "Density, e and mu as they are"
+                tip = SUBSTANCES[name].source if name in SUBSTANCES else "Density, e and μ as they are"
                 ui.item(f"of {name}", choose_material, chosen, name, shown=name.capitalize(), on=on, tip=tip)
     with ui.menu("Colour") as shown:
         for name, colour in (COLOURS if shown else {}).items():

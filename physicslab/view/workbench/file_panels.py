@@ -9,12 +9,14 @@ from physicslab.ecs.fields import InvalidValue
 from physicslab.ecs.text import printable
 from physicslab.export.film import ENDINGS
 from physicslab.files.scene import SceneError
+from physicslab.languages.sentence import Sentence
 from physicslab.view.canvas.canvas import Rect
 from physicslab.view.controls import saving
 from physicslab.view.controls.file_actions import begin_film
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.filming import ALL, BACK, FORWARD, FROM_NOW
 from physicslab.view.window.naming import Naming
+from physicslab.view.window.scenes import working_folder
 from physicslab.view.window.window import Window
 from physicslab.world import World
 
@@ -70,7 +72,9 @@ def build_save(ui: Ui, world: World, window: Window) -> None:
     close, naming = window.closing_of("scenes.naming"), window.scenes.naming
     assert naming is not None
     with ui.floating("Save a copy" if naming.copies else "Save", window.framing.middle, close):
-        ui.faint("A file in the working directory, or a path", wrapped=False)
+        with ui.wrapping(_SAVE * ui.size):
+            folder = printable(str(working_folder()))
+            ui.faint(Sentence("In {folder}, unless a path is written", folder=folder), wrapped=False)
         entered = build_name(ui, "File name", naming, _SAVE, close)
 
         def write(world: World, window: Window, over: Path | None = None) -> None:

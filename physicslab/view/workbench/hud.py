@@ -12,7 +12,13 @@ from physicslab.view.controls.actions import has_gravity
 from physicslab.view.controls.share_actions import finish_sharing
 from physicslab.view.controls.tour import follow_tour
 from physicslab.view.overlay import banners
-from physicslab.view.overlay.edges import count_under, draw_axis_numbers, draw_edge_arrows, draw_scale_bar
+from physicslab.view.overlay.edges import (
+    axis_numbers_height,
+    count_under,
+    draw_axis_numbers,
+    draw_edge_arrows,
+    draw_scale_bar,
+)
 from physicslab.view.overlay.legend import Legend, legends_of
 from physicslab.view.overlay.marks import draw_selection
 from physicslab.view.window.window import Window
@@ -152,7 +158,8 @@ class Hud:
         on = self._window.drawing
         bodies = [one.number for one in self._advice if one.number is not None]
         draw_selection(world, bodies, on, colour=on.theme.warning)
-        return banners.draw_advice(self._advice, room, on, plainly=self._window.level == "Explore")
+        plainly, seen_only = self._window.level != "Engineer", self._window.level == "Explore"
+        return banners.draw_advice(self._advice, room, on, plainly=plainly, seen_only=seen_only)
 
     # ---- drawing -------------------------------------------------------------------------------------------
 
@@ -165,7 +172,7 @@ class Hud:
         (left, top, width, height), size = room, on.size
         margin = round(_MARGIN * size)
         bar = draw_scale_bar(on, left + width, top + height - margin)
-        numbers, written = draw_axis_numbers(on, room, bar[0], self._windows) if window.grid else (0, [])
+        numbers = axis_numbers_height(on) if window.grid else 0
         taken = [bar, *self._draw_messages(world, bar, numbers)]
         bottom = min(rect[1] for rect in taken) - margin
         begin, wide, edge = self._free_strip(at_top=True)
@@ -177,8 +184,10 @@ class Hud:
         taken += [*shown, *([] if advice is None else [advice])]
         legends = legends_of(window.overlays, (width - 2 * margin, height), on)
         taken += self._draw_legend(world, legends, room, margin, taken)
+        over = [*taken, *self._windows]
+        written = draw_axis_numbers(on, room, bar[0], over) if window.grid else []
         inner = left, top, width, max(height - numbers, 1)
-        draw_edge_arrows(world, on, inner, [*taken, *written, *self._windows])
+        draw_edge_arrows(world, on, inner, [*over, *written])
         return taken
 
     def _draw_legend(

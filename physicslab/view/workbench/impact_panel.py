@@ -17,7 +17,7 @@ from physicslab.view.window.window import Window
 from physicslab.view.workbench.collision_words import body_name
 from physicslab.world import World
 
-HEADS = ("Time", "A", "B", "Approach", "Normal", "Friction", "Contact", "mu", "e", "e found", "Energy lost")
+HEADS = ("Time", "A", "B", "Approach", "Normal", "Friction", "Contact", "μ", "e", "e found", "Energy lost")
 _WIDTHS = (4.6, 5.2, 5.2, 4.8, 5.0, 5.0, 3.6, 2.4, 2.2, 3.8, 5.0)
 """Widths of the columns, in heights of the text."""
 _TIPS = (

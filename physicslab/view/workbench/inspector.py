@@ -138,8 +138,8 @@ def build_pairs(ui: Ui, measured: Measured) -> None:
         if one.pair is not None:
             other, friction, restitution = one.pair
             mu, e = f"{friction:.4g}", f"{restitution:.4g}"
-            ui.faint(Sentence("With {body}: mu = {mu}, e = {e}", body=other, mu=mu, e=e))
-            ui.tip("For this pair mu is the root of both frictions multiplied, e the smaller restitution")
+            ui.faint(Sentence("With {body}: μ = {mu}, e = {e}", body=other, mu=mu, e=e))
+            ui.tip("For this pair μ is the root of both frictions multiplied, e the smaller restitution")
 
 
 def build_pair(ui: Ui, world: World, one: int, other: int) -> None:
@@ -150,7 +150,7 @@ def build_pair(ui: Ui, world: World, one: int, other: int) -> None:
     mu = friction_of_pair(a.friction, b.friction)
     e = restitution_of_pair(a.restitution, b.restitution)
     ui.rule(0.2)
-    ui.row("mu of the pair", f"{mu:.4g}", "The root of both frictions multiplied")
+    ui.row("μ of the pair", f"{mu:.4g}", "The root of both frictions multiplied")
     ui.row("e of the pair", f"{e:.4g}", "The smaller restitution")
 
 

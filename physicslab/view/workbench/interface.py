@@ -292,7 +292,7 @@ class Interface:
         if self.toolkit.frame(window.canvas.size, window.theme, float(self.text), elapsed, build):
             self._walk.end(is_alone=not window.in_front)
             self._built = window.canvas.size, self.text
-            window.arrangements[width] = self.toolkit.arrangement()
+            window.arrangements[width] = self.ui.arranged(self.toolkit.arrangement())
             self._arranged = width, window.arrangements[width]
         if self._early.advance(self._opened, typing=self.toolkit.typing):
             self.toolkit.wake()

@@ -89,7 +89,7 @@ def _build_row(
     row: Row | str | None, predicted: float | None, width: float,
 ) -> None:  # fmt: skip
     own = lesson.lesson.own
-    values = ", ".join(f"{name} = {formula(own, text)}" for name, text in case.values)
+    values = ", ".join(formula(own, f"{name} = {text}") for name, text in case.values)
     imgui.table_next_row()
     imgui.table_next_column()
     what = values if case.values else Sentence("as run")

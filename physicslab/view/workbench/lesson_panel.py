@@ -11,7 +11,7 @@ from physicslab.ecs.text import printable
 from physicslab.languages.sentence import Sentence, proper
 from physicslab.lessons.answers import Graded
 from physicslab.lessons.lesson import SURENESS, Compare, Explain, Lesson, Part, Prose, Question, Recall, Run
-from physicslab.lessons.words import formula, sureness_words
+from physicslab.lessons.words import cited, formula, sureness_words
 from physicslab.view.canvas.quantities import written_unit
 from physicslab.view.controls import lesson_actions
 from physicslab.view.toolkit.ui import Ui
@@ -128,7 +128,7 @@ class LessonPanel:
         match part:
             case Prose():
                 for paragraph in part.text.split("\n\n"):
-                    ui.text(" ".join(paragraph.split()), wrapped=True)
+                    _tell(ui, lesson.lesson, " ".join(paragraph.split()))
                     ui.gap(0.2)
             case Question(kind="predict"):
                 self._build_prediction(ui, window, lesson, part)
@@ -237,11 +237,11 @@ class LessonPanel:
         colour = ui.theme.accent if graded.right else ui.theme.error
         ui.text(f"{RIGHT}  Right." if graded.right else f"{WRONG}  Not so.", colour)
         if graded.feedback:
-            ui.text(graded.feedback, wrapped=True)
+            _tell(ui, lesson.lesson, graded.feedback)
         if graded.idea:
-            ui.faint(f"Behind it: {graded.idea}")
-            sources = lesson.lesson.sources
-            ui.tip("; ".join(words for key, words in sources.items() if f"[{key}]" in graded.idea))
+            idea, sources = cited(graded.idea, lesson.lesson.sources)
+            ui.faint(f"Behind it: {idea}")
+            ui.tip(sources)
         if not graded.right and kind == "predict":
             ui.text(f"It is: {graded.expected}", wrapped=True)
         shown = next((one.shown_by for one in part.replies if one.feedback == graded.feedback), None)
@@ -307,9 +307,9 @@ class LessonPanel:
             return
         for name, (low, high) in setup.opened.items():
             label = f"{part.name}: {name}"
-            note = setup.notes.get(name, "")
+            note, symbol = setup.notes.get(name, ""), formula(lesson.lesson.own, name)
             imgui.align_text_to_frame_padding()
-            ui.faint(name, wrapped=False)
+            ui.faint(symbol, wrapped=False)
             ui.tip(note)
             imgui.same_line(4.0 * ui.size)
             shown = ui.language.decimal(lesson.values[name])
@@ -329,7 +329,7 @@ class LessonPanel:
             if moved is not None and not editing:
                 lesson.values[name] = _in_unit_of(moved, low)
             if not least <= value <= most:
-                ui.refusal(f"{name} must be from {low} to {high}")
+                ui.refusal(f"{symbol} must be from {low} to {high}")
                 ready = False
         case = lesson.own_case()
         if ui.button(f"Run own {part.name}", "", shown=f"{RUN}  Run with these values",
@@ -360,7 +360,9 @@ class LessonPanel:
         if given is not None:
             ui.text(f"You: {given['text']}", wrapped=True)
             ui.gap(0.2)
-            ui.text(f"Compare with: {part.answer}", ui.theme.heading, wrapped=True)
+            model, sources = cited(part.answer, lesson.lesson.sources)
+            ui.text(f"Compare with: {model}", ui.theme.heading, wrapped=True)
+            ui.tip(sources)
             return
         draft = self._drafts.get(part.name, "")
         self._drafts[part.name], _ = ui.field(f"Explain {part.name}", draft, -1.0, lines=4)
@@ -380,9 +382,16 @@ def _build_trial(ui: Ui, lesson: OpenLesson, trial: Trial) -> None:
     ui.refusal(trial.failure)
     if trial.case.values:
         own = lesson.lesson.own
-        values = (f"{name} = {formula(own, text)}" for name, text in trial.case.values)
+        values = (formula(own, f"{name} = {text}") for name, text in trial.case.values)
         ui.faint(f"Shown: {', '.join(values)}")
     plot_run(ui, lesson, trial)
+
+
+def _tell(ui: Ui, lesson: Lesson, text: str) -> None:
+    """Write a text of a lesson; its sources are in a tip."""
+    words, sources = cited(text, lesson.sources)
+    ui.text(words, wrapped=True)
+    ui.tip(sources)
 
 
 def _title(ui: Ui, icon: str, words: str) -> None:

@@ -96,7 +96,7 @@ def _build_more(ui: Ui, world: World, window: Window, told: Sequence[str], wide:
         if ui.button(f"Seen by: {frame}", tip, shown=frame, on=microscope.frame == frame):
             microscope.frame = frame
     collision = microscope.collision
-    ui.row("Friction and restitution", f"mu = {collision.friction:.4g}, e = {collision.restitution:.4g}")
+    ui.row("Friction and restitution", f"μ = {collision.friction:.4g}, e = {collision.restitution:.4g}")
     for sentence in told:
         ui.text(sentence, wrapped=True)
     _build_velocities(ui, seen)

@@ -1,5 +1,6 @@
 """The world as the camera sees it, with the overlays that are on."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -9,7 +10,7 @@ from physicslab.components import Held, Transform, Velocity
 from physicslab.diagnostics.joints import joint_states
 from physicslab.ecs.vector import Vector2
 from physicslab.view.canvas.camera import Drawing
-from physicslab.view.canvas.canvas import is_within
+from physicslab.view.canvas.canvas import Rect, is_within
 from physicslab.view.canvas.quantities import quantity
 from physicslab.view.controls import drawing
 from physicslab.view.controls.copies import coming
@@ -62,17 +63,19 @@ class WorldView:
         draw_world(world, camera, theme, canvas, grid=window.grid, squash=window.squash if plays else None)
         window.dust.draw(world.time, camera, theme, canvas)
         window.sparks.draw(camera, theme, canvas)
+        overlays.awaits_prediction = window.lesson is not None and window.lesson.waits
         if overlays.arrows:
             draw_vectors(world, overlays, on)
         if overlays.centres or overlays.momenta:
             draw_wholes(world, window.selection.entities, overlays, on)
-        if overlays.impulses:
-            self._draw_impulses(world, on)
         marks.draw_selection(world, window.selection.entities, on)
-        self._draw_forces(world, on)
+        taken = list(overlays.covered)  # labels keep clear of those of the kinds before
+        taken += self._draw_forces(world, taken, on)
+        if overlays.impulses and not overlays.awaits_prediction:
+            taken += self._draw_impulses(world, taken, on)
         if window.band is not None:
             marks.draw_band(camera.to_screen(window.band), window.pointer, on)
-        self._draw_instruments(world, on)
+        self._draw_instruments(world, taken, on)
         if not window.filming.running:  # a film has no cursor
             self._draw_hand(world, on)
             self._draw_handles(world, on)
@@ -104,31 +107,33 @@ class WorldView:
         if snapping.place is not None:
             marks.draw_snap_marks([(mark.axis, mark.at) for mark in snapping.marks], snapping.place, on)
 
-    def _draw_forces(self, world: World, on: Drawing) -> None:
+    def _draw_forces(self, world: World, covered: Sequence[Rect], on: Drawing) -> list[Rect]:
         """Measure the forces on the selection where its panel is shown, and draw them with the arrows."""
         window, overlays, measured = self._window, self._window.overlays, self._window.measured
         chosen = window.selection.entities
-        shown = len(chosen) == 1 and (overlays.arrows or window.figures)
+        shown = len(chosen) == 1 and (overlays.arrows or window.figures) and not overlays.awaits_prediction
         measured.follow(world, chosen[0] if shown else None, window.now, paused=window.pace.paused)
-        if overlays.arrows and measured.forces:
-            moved, smaller = measured.moved(world, chosen[0]), replace(on, size=on.size - 1)
-            draw_free_body(measured.forces, moved, world.time, overlays, smaller)
+        if not (overlays.arrows and measured.forces):
+            return []
+        moved, smaller = measured.moved(world, chosen[0]), replace(on, size=on.size - 1)
+        return draw_free_body(measured.forces, moved, world.time, overlays, covered, smaller)
 
-    def _draw_impulses(self, world: World, on: Drawing) -> None:
+    def _draw_impulses(self, world: World, covered: Sequence[Rect], on: Drawing) -> list[Rect]:
         """Draw impulses; resting contacts have numbers where they are selected or under the cursor."""
         window = self._window
         hovered = None if window.pointer_on_panel else body_at(world, window.camera, window.pointer)
         written = {*window.selection.entities, *(() if hovered is None else (hovered,))}
-        draw_impulses(world, window.overlays, written, replace(on, size=on.size - 2))
+        smaller = replace(on, size=on.size - 2)
+        return draw_impulses(world, window.overlays, written, covered, smaller)
 
-    def _draw_instruments(self, world: World, on: Drawing) -> None:
+    def _draw_instruments(self, world: World, covered: Sequence[Rect], on: Drawing) -> None:
         """Draw what measures, and what is being placed of it."""
         window, state = self._window, self._window.measuring
         preview = state.preview(spot_of(world, window)) if state.spots else None
         shown = [*instruments_of(world, state.overrides), *([] if preview is None else [preview])]
         if state.writing is not None:
             shown = [one for one in shown if one.entity != state.writing.entity]
-        chosen, covered = window.selection.entities, window.overlays.covered
+        chosen = window.selection.entities
         state.rects = draw_instruments(world, shown, chosen, state.labels, covered, on)
         if state.hovered is not None:
             marks.draw_selection(world, (state.hovered,), on)
