@@ -126,7 +126,8 @@ def is_known(manifold: Manifold, point: Point, motion: Motion, shapes: Shapes) -
     """Whether normal and arms of a pair are those of the moment at which it meets.
 
     Those of discs are, and those of a disc and a box that does not turn; of rounded polygons, swept ones',
-    and of any shapes those of an inner disc. Those of a pair that was not to meet before other impacts are not.
+    and of any shapes those of an inner disc. Those of a pair that was not to meet, before other impacts, are
+    not.
     """
     a, b, first, vertices = manifold.a, manifold.b, shapes.first, shapes.vertices
     if manifold.swept == 2:
