@@ -229,7 +229,7 @@ class Interface:
         if event.type in (pygame.MOUSEMOTION, *_BUTTONS):
             self._window.pointer_beside_panel = self.toolkit.covers(event.pos, _BESIDE)
         if gives_up and taken:
-            self._window.closed_at = self._window.now
+            self._window.note_closed()
         saves = event.type == pygame.KEYDOWN and is_for_files(event)
         if (event.type == pygame.MOUSEBUTTONDOWN and not taken) or saves:
             refusal = self._finish_fields()
