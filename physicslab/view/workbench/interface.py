@@ -268,7 +268,7 @@ class Interface:
         if (width, window.arrangements[width]) != self._arranged:
             self._arranged = width, window.arrangements[width]
             self.toolkit.arrange(window.arrangements[width])
-            self.ui.rearrange(as_at_first=not window.arrangements[width])
+            self.ui.rearrange(window.arrangements[width])
         self._follow_keys()
         seen = self._state(world)
         late, is_new, self._figures = window.now - self._next, figures is not self._figures, figures
