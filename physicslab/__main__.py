@@ -13,9 +13,10 @@ def run() -> int:
 
             return main()
     except KeyboardInterrupt:
+        from physicslab.commands import tell
         from physicslab.commands.interrupts import INTERRUPTED
 
-        print("physicslab: interrupted", file=sys.stderr)
+        tell("physicslab: interrupted")
         return INTERRUPTED
 
 

@@ -7,7 +7,7 @@ from contextlib import suppress
 from importlib.metadata import PackageNotFoundError
 
 import physicslab
-from physicslab.commands import FAILED, USAGE, CommandError, command, require_window
+from physicslab.commands import FAILED, USAGE, CommandError, command, require_window, tell
 from physicslab.commands.interrupts import INTERRUPTED
 from physicslab.commands.parsers import WindowParser, completion, manual, parser_of
 from physicslab.commands.usage import COMMANDS
@@ -63,14 +63,19 @@ def main(argv: Sequence[str] | None = None) -> int:
 def _dispatch(arguments: list[str]) -> int:
     if arguments and arguments[0] in COMMANDS:
         name, *rest = arguments
-        parsed = parser_of(name).parse_args(rest)  # help and bad usage end here, before physics is imported
+        own = parser_of(name)
+        parsed, more = own.parse_known_args(rest)  # help and bad usage end here, before physics is imported
+        if more:
+            own.refuse(more)
         return command(name).execute(parsed)
     parser = WindowParser(_version())
     given, more = parser.parse_known_args(arguments)
     if more:
         likely = suggestion(given.scene or "", COMMANDS)
         misspelt = f"{given.scene}: is no command{likely}"
-        parser.error(misspelt if likely else f"unrecognized arguments: {' '.join(more)}")
+        if likely:
+            parser.error(misspelt)
+        parser.refuse(more)
     if given.print_completion is not None or given.print_manual:
         print(manual(_version()) if given.print_manual else completion(given.print_completion), end="")
         return 0
@@ -112,7 +117,13 @@ def _version() -> str:
 
 
 def _complain(message: str, status: int) -> int:
-    print(f"physicslab: {shortened(printable(message), _LINE_LIMIT)}", file=sys.stderr)
+    """Print an error below what was printed before it, and return the status."""
+    try:
+        if sys.stdout is not None:
+            sys.stdout.flush()
+    except OSError:
+        _let_go_of_stdout()
+    tell(f"physicslab: {shortened(printable(message), _LINE_LIMIT)}")
     return status
 
 

@@ -235,7 +235,13 @@ USAGE = [
     (["run", "drop", "--substeps", "100000"], "--substeps 100000: must be a whole number"),
     (["run", "drop", "--integrator", "magic"], '--integrator "magic": must be one of "auto", '),
     (["run", "drop", "--seconds", "1", "--steps", "1"], "not allowed with argument"),
-    (["run", "drop", "--sec", "1"], "unrecognized arguments: --sec"),
+    (["run", "drop", "--sec", "1"], 'unrecognized arguments: --sec 1; did you mean "--seconds"?'),
+    (["run", "drop", "--seconds=--"], "argument --seconds: '--': must be a finite number >= 0 s"),
+    (["run", "drop", "--set=--"], '--set "--": must be ID.Component.field=VALUE'),
+    (
+        ["run", "drop", "--set", "physcs.gravity=1"],
+        'must be ID.Component.field=VALUE; did you mean "physics"?',
+    ),
     (["run", "drop", "--json", "-", "--csv", "-"], "--json and --csv cannot both go to -"),
     (
         ["run", "drop", "--json", "none/x.json"],
@@ -256,6 +262,19 @@ USAGE = [
     (
         ["sweep", "drop", "--vary", f"{MASS}=1:2:2", "--set", f"{MASS}=3", "--measure", "time"],
         '--set: entity "ball": Mass.mass: is varied too; a field must be set or varied',
+    ),
+    (
+        ["sweep", "drop", "--vary", f"{MASS}=1e308:-1e308:3", "--measure", "time"],
+        'Mass.mass = "1e308:-1e308:3": must be two numbers that differ, and a count from 2',
+    ),
+    (
+        ["sweep", "drop", "--vary", f"{MASS}=1:2:{'9' * 5000}", "--measure", "time"],
+        "must be two numbers that differ, and a count from 2",
+    ),
+    (["sweep", "drop", *VARIED, "--measure", "1e309"], "measure \"1e309\": '1e309' is not finite"),
+    (
+        ["sweep", "drop", *VARIED, "--measure", "ball"],
+        "measure \"ball\": 'ball' is no quantity: ball has x, y, angle, ",
     ),
     *(
         ([*OPENED, *option], f"{option[0]}: must go without --open, which makes no run")
@@ -281,6 +300,10 @@ USAGE = [
     (
         ["stability", "qqqq"],
         '"qqqq": is no case; there are the groups springs, dampers, chains, joints, fields, stacks, ',
+    ),
+    (
+        ["kernels", "import", "/dev/zero"],
+        "/dev/zero: is a pipe or a device; an archive of kernels must be a plain",
     ),
     (["stability", "--json", "none/x.json", "far"], "--json none/x.json: cannot be written"),
 ]
@@ -537,12 +560,32 @@ def test_a_reader_that_leaves_is_no_traceback() -> None:
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
-def test_a_full_stdout_is_said() -> None:
+@pytest.mark.parametrize(
+    ("arguments", "line"),
+    [
+        (["scenes"], "No space left on device"),
+        (["run", "drop", "--csv", "-"], "--csv -: cannot be written: No space left on device"),
+    ],
+)
+def test_a_full_stdout_is_said(arguments: list[str], line: str) -> None:
     with open("/dev/full", "w") as full:
         done = subprocess.run(
-            [sys.executable, "main.py", "scenes"], cwd=ROOT, stdout=full, stderr=subprocess.PIPE, text=True
+            [sys.executable, "main.py", *arguments], cwd=ROOT, stdout=full, stderr=subprocess.PIPE, text=True
         )
-    assert (done.returncode, done.stderr) == (1, "physicslab: No space left on device\n")
+    assert (done.returncode, done.stderr) == (1, f"physicslab: {line}\n")
+
+
+@pytest.mark.parametrize("gone", ["closed", "full"])
+def test_an_error_that_stderr_cannot_take_is_not_among_the_results(
+    gone: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    class Full(io.StringIO):
+        def write(self, text: str) -> int:
+            raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(sys, "stderr", None if gone == "closed" else Full())
+    assert cli.main(["run", "nothing"]) == 2
+    assert capsys.readouterr().out == ""
 
 
 @pytest.mark.skipif(not Path("/dev/stdout").exists(), reason="needs /dev/stdout")

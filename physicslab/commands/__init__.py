@@ -5,7 +5,9 @@
 """
 
 import importlib.util
+import sys
 from argparse import Namespace
+from contextlib import suppress
 from importlib import import_module
 from keyword import iskeyword
 from typing import Protocol, cast
@@ -28,6 +30,16 @@ class CommandError(Exception):
     def __init__(self, message: str, status: int = USAGE) -> None:
         super().__init__(message)
         self.status = status
+
+
+def tell(line: str) -> None:
+    """Print a line on stderr, and nothing where that is closed or full.
+
+    ``print`` takes stdout in place of a stderr that is closed, among the rows or the document there.
+    """
+    if sys.stderr is not None:
+        with suppress(OSError):
+            print(line, file=sys.stderr, flush=True)
 
 
 def require(user: str, extra: str, *packages: str) -> None:

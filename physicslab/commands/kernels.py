@@ -6,10 +6,11 @@ from argparse import Namespace
 from pathlib import Path
 
 import physicslab
-from physicslab.commands import FAILED, CommandError
+from physicslab.commands import FAILED, CommandError, tell
 from physicslab.commands.output import Output
 from physicslab.commands.progress import Progress
 from physicslab.ecs.text import printable
+from physicslab.files.plain import open_plain
 from physicslab.files.replace import reason_of
 from physicslab.kernels import cache_directory
 from physicslab.kernels.archive import ArchiveError, pack, unpack, wheel
@@ -88,12 +89,13 @@ def _write(output: Output, content: bytes) -> None:
 
 def _import(file: str) -> int:
     try:
+        open_plain(file, file, "an archive of kernels").close()
         unpack(Path(file))
     except ArchiveError as error:
         raise CommandError(f"{file}: {error}") from error
     except (OSError, ValueError) as error:  # ValueError: a null character in the name
         raise CommandError(f"{file}: {reason_of(error)}") from error
-    print(_WARNING, file=sys.stderr)
+    tell(_WARNING)
     mark_warm()
     complete = "all kernels are there" if is_warm() else "some kernels are missing: those will be compiled"
     print(f"imported; {complete}")

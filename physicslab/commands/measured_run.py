@@ -5,6 +5,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 
+from physicslab.commands import tell
 from physicslab.commands.opening import stopped_at
 from physicslab.commands.progress import Progress
 from physicslab.diagnostics.energy import Accounts, Audit
@@ -156,9 +157,8 @@ class MeasuredRun:
         slow = self._watch.note(made, taken)
         told = f"slow: {slow}" if slow else "", self._watch.note_impacts(), self._watch.note_breaks()
         for line in filter(None, told):
-            if sys.stderr is not None:
-                progress.clear()
-                print(f"physicslab: {self._label}: {printable(line)}", file=sys.stderr, flush=True)
+            progress.clear()
+            tell(f"physicslab: {self._label}: {printable(line)}")
         record.steps = done
         return True
 

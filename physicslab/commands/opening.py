@@ -1,11 +1,10 @@
 """The scene that a command line names, opened; how long it may run, and what is said of it."""
 
-import sys
 from argparse import Namespace
 from collections.abc import Iterable
 from pathlib import Path
 
-from physicslab.commands import CommandError
+from physicslab.commands import CommandError, tell
 from physicslab.commands.output import Output
 from physicslab.commands.usage import STEP_LIMIT
 from physicslab.ecs.text import printable
@@ -28,7 +27,7 @@ def opened(arguments: Namespace, *, again: bool = False) -> World:
 def tell_losses(losses: Iterable[str]) -> None:
     """Name on stderr what of a file has no place in a scene, a line each."""
     for loss in losses:
-        print(f"not taken: {printable(loss)}", file=sys.stderr)
+        tell(f"not taken: {printable(loss)}")
 
 
 def name_of(world: World, arguments: Namespace) -> str:

@@ -94,19 +94,11 @@ class Output:
         A file takes the place of an older one at the end. If writing fails, or the process is killed, the
         older one is still there.
         """
-        if self.to_stdout:
-            text = io.TextIOWrapper(_stdout(), encoding="utf-8", newline="")
-            try:
-                yield text
-                text.flush()
-            finally:
-                text.detach()
-            return
         ended: BaseException | None = None
         try:
-            with replacing(self.path) as fresh, open(fresh, "w", encoding="utf-8", newline="") as file:
+            with self._text() as text:
                 try:
-                    yield file
+                    yield text
                 except OSError:
                     raise
                 except BaseException as error:  # the run ended early: its rows are kept all the same
@@ -117,6 +109,19 @@ class Output:
             raise CommandError(f"{self.label}: cannot be written: {reason_of(error)}", FAILED) from error
         if ended is not None:
             raise ended
+
+    @contextmanager
+    def _text(self) -> Iterator[TextIO]:
+        """Open for text: stdout, which stays open, or what takes the place of the file at the end."""
+        if not self.to_stdout:
+            with replacing(self.path) as fresh, open(fresh, "w", encoding="utf-8", newline="") as file:
+                yield file
+            return
+        text = io.TextIOWrapper(_stdout(), encoding="utf-8", newline="")
+        try:
+            yield text
+        finally:
+            text.detach()  # which flushes it
 
 
 class JsonOutput:

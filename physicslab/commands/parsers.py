@@ -2,11 +2,12 @@
 
 import inspect
 from argparse import SUPPRESS, Action, ArgumentParser
-from collections.abc import Iterator
-from typing import NoReturn
+from collections.abc import Iterator, Sequence
+from typing import Any, NoReturn
 
 from physicslab.commands import CommandError, require
 from physicslab.commands.usage import COMMANDS
+from physicslab.ecs.text import suggestion
 from physicslab.scenes import SCENES
 
 SHELLS = ("bash", "zsh", "tcsh")
@@ -26,6 +27,21 @@ class Parser(ArgumentParser):
 
     def __init__(self, prog: str, description: str | None) -> None:
         super().__init__(prog=prog, description=description, allow_abbrev=False)
+
+    def _get_values(self, action: Action, arg_strings: list[str]) -> Any:
+        """Return the value of an argument: ``--option=--`` has one, which older versions of argparse drop."""
+        if action.option_strings and arg_strings == ["--"]:
+            value = self._get_value(action, *arg_strings)
+            self._check_value(action, value)
+            return value
+        return super()._get_values(action, arg_strings)
+
+    def refuse(self, arguments: Sequence[str]) -> NoReturn:
+        """Refuse arguments that the command does not have, with the option that a misspelt one may mean."""
+        names = (one.partition("=")[0] for one in arguments if one.startswith("-"))
+        known = list(self._option_string_actions)
+        likely = (suggestion(name, [one for one in known if one.startswith(name)] or known) for name in names)
+        self.error(f"unrecognized arguments: {' '.join(arguments)}{next(filter(None, likely), '')}")
 
     def error(self, message: str) -> NoReturn:
         """Refuse it."""

@@ -3,6 +3,7 @@
 import math
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from datetime import timedelta
 from typing import Self, TextIO
 
@@ -66,5 +67,6 @@ class Progress:
 
     def _put(self, text: str) -> None:
         if self._stream is not None:
-            self._stream.write(text)
-            self._stream.flush()
+            with suppress(OSError):  # a terminal that is closed, or a reader that has gone, ends no run
+                self._stream.write(text)
+                self._stream.flush()

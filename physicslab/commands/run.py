@@ -11,7 +11,7 @@ from mimetypes import guess_type
 from pathlib import Path
 from typing import TextIO
 
-from physicslab.commands import FAILED, CommandError, require_window
+from physicslab.commands import FAILED, CommandError, require_window, tell
 from physicslab.commands.measured_run import MeasuredRun
 from physicslab.commands.opening import check_output, check_seconds, name_of, opened
 from physicslab.commands.output import Output
@@ -59,9 +59,9 @@ def _execute(world: World, arguments: Namespace, outputs: Mapping[str, Output], 
             run.go(seconds, arguments.steps)
         except Diverged as error:
             raise CommandError(f"{label}: {error}; {_rescue(world, name, outputs)}", FAILED) from error
-    if table is not None and table.lost and sys.stderr is not None:
+    if table is not None and table.lost:
         lines = f"--ledger: {table.lost} of {table.lost + table.rows} impacts are not in it"
-        print(f"physicslab: {label}: {lines}: too many between two readings", file=sys.stderr)
+        tell(f"physicslab: {label}: {lines}: too many between two readings")
     report, stopped = run_report(world, run.record), run.stopped
     place = find_not_finite(report)
     if place is not None:

@@ -1,6 +1,7 @@
 """Fields of a scene that differ from run to run: ``--vary ball.Velocity.linear.x=1:5:9``."""
 
 import itertools
+import math
 from collections.abc import Container, Iterator, Sequence
 from dataclasses import dataclass
 
@@ -15,6 +16,9 @@ from physicslab.export.page import Varied, field_words
 from physicslab.files.checks import SceneError, shown
 from physicslab.files.places import SECTIONS, Place, entity_names, find_place, read_path
 from physicslab.world import World
+
+_DIGITS = 100
+"""More digits than a count has; Python makes no number of thousands of them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,9 +110,10 @@ def _values(place: Place, span: str, most: int) -> tuple[float, ...]:
         ends = evaluate(start, place.spec.unit), evaluate(stop, place.spec.unit)
     except InvalidText as error:
         raise SceneError(f"{where}: {error}; must be START:STOP:COUNT") from error
-    if not number.isdecimal() or not 2 <= int(number) <= most or ends[0] == ends[1]:
+    count = int(number) if number.isdecimal() and len(number) < _DIGITS else 0
+    if not 2 <= count <= most or not 0.0 < abs(ends[1] - ends[0]) < math.inf:
         raise SceneError(f"{where}: must be two numbers that differ, and a count from 2 to {most}")
-    values: list[float] = np.linspace(*ends, int(number)).tolist()
+    values: list[float] = np.linspace(*ends, count).tolist()
     if not whole:
         return tuple(values)
     if not all(value.is_integer() for value in values):

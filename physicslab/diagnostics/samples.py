@@ -64,7 +64,7 @@ def quantity_of(name: str, ids: Iterable[str]) -> tuple[str | None, str]:
         If the world has no such quantity; with the names that it has.
     """
     known = [*ids, "world"]
-    entity = max((one for one in known if name.startswith(f"{one}.")), key=len, default="")
+    entity = max((one for one in known if f"{name}.".startswith(f"{one}.")), key=len, default="")
     if not entity:
         words = ", ".join(one if _is_word(one) else f'"{one}"' for one in known[:_LISTED])
         more = (", ..." if len(known) > _LISTED else "") + suggestion(name.rpartition(".")[0] or name, known)

@@ -195,7 +195,10 @@ class Expression:
     def value(self, scope: Scope | None = None) -> Quantity:
         """Return what it stands for, or raise :class:`InvalidText`."""
         try:
-            return self._value(self.node, scope)
+            found = self._value(self.node, scope)
+            if math.isinf(found.value):
+                raise OverflowError
+            return found
         except (OverflowError, ZeroDivisionError):
             raise Undefined(f"'{_shown(self.text)}' is not finite") from None
         except ValueError as error:

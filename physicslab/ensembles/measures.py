@@ -83,7 +83,7 @@ def _refuse_undefined(expression: Expression) -> None:
         match node:
             case ast.BinOp(op=ast.Div() as division, right=divisor):
                 node = ast.BinOp(ast.Constant(1), division, divisor)
-            case ast.BinOp() | ast.Call():
+            case ast.BinOp() | ast.Call() | ast.Constant(value=int() | float()):
                 pass
             case _:
                 continue

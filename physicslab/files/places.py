@@ -164,6 +164,7 @@ def read_path(
     """
     splits = list(_splits(text))
     section = next((one for one in splits if one[1] in SECTIONS and not one[0]), None)
+    unknown = next((one[1] for one in splits if not one[0]), "")
     splits = [one for one in splits if one[0]]
     known_entity = next((split for split in splits if split[0] in names), None)
     if section is not None and known_entity is None:
@@ -171,7 +172,7 @@ def read_path(
         return name, SECTIONS[name], _spec(f"{option}: {name}", SECTIONS[name].FIELDS, field, value), value
     if not splits:
         given, wanted = (text, f"{_FORM}={form}") if form else (text.removesuffix("="), _FORM)
-        raise SceneError(f"{option} {shown(given)}: must be {wanted}")
+        raise SceneError(f"{option} {shown(given)}: must be {wanted}{suggestion(unknown, SECTIONS)}")
     name, component, field, value = known_entity or splits[0]
     where = f"{option}: entity {shown(name)}: {_shown(component)}"
     if name in SECTIONS and name not in names:
