@@ -20,8 +20,8 @@ from physicslab.state.contents import Contents
     simulation=SimulationConfig(sleeping=True),
 )
 def sandbox(world: Contents) -> None:
-    box(world, (0.0, -0.2), width=11.6, height=0.4, static=True, friction=0.6, name="floor")
-    box(world, (-4.0, 0.9), width=3.2, height=0.16, angle=-0.42, static=True, friction=0.6, name="ramp")
+    box(world, (0.0, -0.2), width=11.6, height=0.4, static=True, friction=0.6, restitution=1.0, name="floor")
+    box(world, (-4.0, 0.9), width=3.2, height=0.16, angle=-0.42, static=True, friction=0.6, restitution=1.0, name="ramp")
     for n, radius in enumerate((0.22, 0.3, 0.18)):
         position = (-5.1 + 0.62 * n, 2.2 - 0.28 * n)
         circle(world, position, radius=radius, mass=5.0 * math.pi * radius**2, restitution=0.3)

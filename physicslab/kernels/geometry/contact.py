@@ -4,14 +4,7 @@ import math
 
 from physicslab.kernels import Rows, Vectors, always_inlined, inlined
 from physicslab.kernels.arguments import Bounds, Inverse, Materials, Motion, Near
-from physicslab.kernels.constraint.pair import (
-    frame_of,
-    inverse_mass_of,
-    moment_arms,
-    point_state,
-    response,
-    velocity_of,
-)
+from physicslab.kernels.constraint.pair import frame_of, inverse_mass_of, moment_arms, response
 from physicslab.kernels.geometry import apart, pair
 from physicslab.kernels.geometry.bend import note_bends
 from physicslab.kernels.geometry.cores import VERTICES
@@ -114,32 +107,6 @@ def slides_on(manifold: Manifold, one: Point, two: Point, travel: float) -> bool
     """Whether a pair has other points on a chain soon: it moves by ``travel`` [m], or is where that turns."""
     on_bend = one.feature >= VERTICES or (manifold.count == 2 and two.feature >= VERTICES)
     return bool(manifold.wall < -1 and (on_bend or travel > pair.SWEEP_THRESHOLD * manifold.size))
-
-
-@inlined
-def put_on_surfaces(manifold: Manifold, one: Point, two: Point) -> None:
-    """Move points that lie in gaps onto the surface of each body: where these close, both are one point."""
-    for j in range(manifold.count):
-        point = one if j == 0 else two
-        half = 0.5 * max(point.separation, 0.0)
-        point.arm_ax -= half * manifold.normal_x
-        point.arm_ay -= half * manifold.normal_y
-        point.arm_bx += half * manifold.normal_x
-        point.arm_by += half * manifold.normal_y
-
-
-@inlined
-def bounces_within(manifold: Manifold, one: Point, two: Point, motion: Motion, span: float) -> bool:
-    """Whether a second point, not met yet, comes within ``span`` seconds where it may bounce."""
-    if manifold.count < 2 or manifold.restitution == 0.0:
-        return False
-    v = velocity_of(motion.linear, motion.angular, manifold.a, manifold.b)
-    for j in range(2):
-        point = one if j == 0 else two
-        opens = point_state(frame_of(manifold, point), v).v
-        if point.normal_impulse == 0.0 and 0.0 < point.separation < -span * opens:
-            return True
-    return False
 
 
 @always_inlined

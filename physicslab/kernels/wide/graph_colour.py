@@ -6,12 +6,13 @@ from physicslab.kernels import Flags, Numbers, Plain, Rows, Vectors, inlined, ke
 from physicslab.kernels import near_counts as N
 from physicslab.kernels.arguments import Inverse, Materials, Motion, Near, named_near
 from physicslab.kernels.broad.near_pairs import sort_scalar
-from physicslab.kernels.geometry.contact import bounces_within, note_pose, put_on_surfaces, slides_on
+from physicslab.kernels.geometry.contact import note_pose, slides_on
 from physicslab.kernels.geometry.pair import CONTACT_MARGIN, SWEEP_THRESHOLD, WIDE_SHARE
 from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple, named_shapes
 from physicslab.kernels.records import Manifold, Manifolds, Point
 from physicslab.kernels.wide.restore_slots import fill_slot, is_of_kind
 from physicslab.kernels.wide.slots import COLOURS, clear_slot, list_scalar
+from physicslab.kernels.wide.within_step import bounces_within, put_on_surfaces
 from physicslab.kernels.wide_layout import BOX, WIDE, Masks, Slots, rows_of
 
 MIN_WIDE = 64

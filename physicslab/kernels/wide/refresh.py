@@ -21,6 +21,7 @@ from physicslab.kernels.geometry.shapes import Shapes
 from physicslab.kernels.near_counts import DISC_BLOCKS, SCALAR
 from physicslab.kernels.wide.restore_slots import fill_points
 from physicslab.kernels.wide.slots import empty_slot, set_scalar, store_slot
+from physicslab.kernels.wide.within_step import bounces_within, put_on_surfaces
 
 _WITHIN_STEP = 100.0
 """Multiple of the tolerances of points beyond which a wide contact becomes scalar within a step."""
@@ -125,14 +126,14 @@ def _find_again(
     turned = near.rotations
     contact.touch(manifold, one, two, way, motion, shapes, bounds, turned, h, start, speculative_margin, rest)
     slides = contact.slides_on(manifold, one, two, abs(way.ux) + abs(way.uy))
-    bounces = contact.bounces_within(manifold, one, two, motion, h + rest * h)
+    bounces = bounces_within(manifold, one, two, motion, h + rest * h)
     if manifold.count == 0 or manifold.swept != 0 or slides or bounces:
         if manifold.count == 0:
             contact.forget_points(one, two)
         manifold.found, manifold.slot = 0, -1
         empty_slot(slots, slot)
         return False
-    contact.put_on_surfaces(manifold, one, two)
+    put_on_surfaces(manifold, one, two)
     contact.note_pose(manifold, way.dx, way.dy, motion.angle[a], motion.angle[b])
     contact.effective_masses(manifold, near.points, p, inverse)
     fill_points(slots, slot, manifold, one, two)
