@@ -16,6 +16,9 @@ from physicslab.kernels.constraint import impact_law
 from physicslab.kernels.constraint.impact_law import PointResponse
 from physicslab.kernels.constraint.pair import PairInverseMass, PointState
 
+MANY = 10 * settings().max_examples
+"""Random impacts: a thousandth of a second each."""
+
 _stronge: Any = compiled(impact_law.stronge_impulse)
 solve_impact: Any = compiled(impact_law.solve_impact)
 solve_impact_of_two: Any = compiled(impact_law.solve_impact_of_two)
@@ -139,7 +142,7 @@ def normal_work(impact: Impact, normal: float) -> tuple[float, float]:
     return taken, given_back
 
 
-@settings(max_examples=3000, deadline=None)
+@settings(max_examples=MANY, deadline=None)
 @given(points())
 def test_every_impact_keeps_the_laws(impact: Impact) -> None:
     kn, kt, between, v, sliding, e, mu = impact
@@ -155,7 +158,7 @@ def test_every_impact_keeps_the_laws(impact: Impact) -> None:
     assert normal * (v + leaving) + tangent * (sliding + left) <= 1e-13 * scale
 
 
-@settings(max_examples=1000, deadline=None)
+@settings(max_examples=MANY // 2, deadline=None)
 @given(points(), st.sampled_from([1e-3, 0.1, 1e3]))
 def test_an_impact_scales_and_is_mirrored(impact: Impact, factor: float) -> None:
     kn, kt, between, v, sliding, e, mu = impact
@@ -193,7 +196,7 @@ def by_parts(
 integrated: Any = numba.njit(by_parts)
 
 
-@settings(max_examples=1000, deadline=None)
+@settings(max_examples=MANY // 2, deadline=None)
 @given(points())
 def test_impulses_are_those_of_the_equations_of_darboux_and_keller(impact: Impact) -> None:
     found = stronge_impulse(*impact)
@@ -208,7 +211,7 @@ def test_impulses_are_those_of_the_equations_of_darboux_and_keller(impact: Impac
 # ---- when it takes over ------------------------------------------------------------------------------------
 
 
-@settings(max_examples=2000, deadline=None)
+@settings(max_examples=MANY, deadline=None)
 @given(
     st.tuples(*(st.floats(0.05, 5.0) for _ in range(3))),
     st.tuples(*(st.floats(-2.0, 2.0) for _ in range(4))),

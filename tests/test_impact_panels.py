@@ -17,8 +17,8 @@ from physicslab.diagnostics.collision import read_collision, resolve
 from physicslab.prefabs import box, circle
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
 from physicslab.view.controls.controls import CONTROLS
+from physicslab.view.toolkit.paper import Paper
 from physicslab.view.window.impacts import FRAMES, LIMIT, ImpactList
-from physicslab.view.workbench.collision_drawing import Sketch
 from physicslab.view.workbench.collision_words import AGREES, law_steps, story
 
 SHIFT = pygame.KMOD_SHIFT
@@ -214,14 +214,14 @@ def looking(desk: Desk) -> Any:
 def test_words_of_its_drawings_lie_on_no_arrow_and_on_no_other_word(
     way: tuple[float, float], text: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    drawn: list[Sketch] = []
-    write = Sketch.write
+    drawn: list[Paper] = []
+    write = Paper.write
 
-    def note(sketch: Sketch) -> None:
+    def note(sketch: Paper) -> None:
         write(sketch)
         drawn.append(sketch)
 
-    monkeypatch.setattr(Sketch, "write", note)
+    monkeypatch.setattr(Paper, "write", note)
     world = empty_world(gravity=(0, 0))
     for name, at, speed, mass in (("A", 0.0, 1.0, 1.0), ("B", 1.0, 0.0, 2.0)):
         velocity = (speed * way[0], speed * way[1])

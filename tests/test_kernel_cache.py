@@ -376,16 +376,16 @@ print(sum(motion.clear.stats.cache_hits.values()))
 """
 
 
-@pytest.mark.parametrize("ending", ["nbi", "nbc"])
-def test_a_file_that_a_crash_has_torn_is_made_again(ending: str, tmp_path: Path) -> None:
+def test_a_file_that_a_crash_has_torn_is_made_again(tmp_path: Path) -> None:
     tmp_path.chmod(0o700)
     kept = str(tmp_path)
-    assert [run(USE, PHYSICSLAB_KERNELS=kept) for _ in range(2)] == ["0\n", "1\n"]
-    torn = [*tmp_path.glob(f"*/*.{ending}")]
-    assert len(torn) == 2
-    for path in torn:
-        path.write_bytes(path.read_bytes()[:9])
-    assert [run(USE, PHYSICSLAB_KERNELS=kept) for _ in range(2)] == ["0\n", "1\n"]
+    assert run(USE, PHYSICSLAB_KERNELS=kept) == "0\n"
+    for ending in ("nbi", "nbc"):
+        torn = [*tmp_path.glob(f"*/*.{ending}")]
+        assert len(torn) == 2
+        for path in torn:
+            path.write_bytes(path.read_bytes()[:9])
+        assert [run(USE, PHYSICSLAB_KERNELS=kept) for _ in range(2)] == ["0\n", "1\n"], ending
 
 
 @posix

@@ -38,12 +38,15 @@ def answer(desk: Desk, part: Question, name: str) -> None:
 
 
 def wait_for_run(desk: Desk, name: str) -> None:
-    desk.window.pace.choose(desk.window.pace.MAX_SPEED)  # pictures are few, steps are those of each run
+    pace = desk.window.pace
+    usual, pace.max_dt = pace.max_dt, 2.0  # pictures are few, steps are those of each run
+    pace.choose(pace.MAX_SPEED)
     for _ in range(4000):
-        desk.frames(2, elapsed=desk.window.pace.max_dt)
+        desk.frames(1, elapsed=pace.max_dt)
         if not now(desk).running:
             break
-    desk.window.pace.return_to_life()
+    pace.return_to_life()
+    pace.max_dt = usual
     trial = now(desk).trial
     assert trial is not None and trial.ended and not trial.failure, name
     desk.frames(SETTLED)

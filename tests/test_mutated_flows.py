@@ -20,7 +20,7 @@ from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.integrators import INTEGRATORS
 from physicslab.kernels import interpreter, python_fallback
-from physicslab.kernels.forces import force_calls, packed_forces
+from physicslab.kernels.forces import force_calls, packed_forces, springs
 from physicslab.kernels.ode import classical, damped_flow, dop853, implicit, propagate, splitting, spring_flow
 from physicslab.state.state import State
 from physicslab.systems.standard import standard_systems
@@ -182,7 +182,7 @@ def test_a_wrong_drift_is_an_error_of_its_true_size(name: str) -> None:
         (
             "spring",
             (
-                packed_forces.pull_ends,
+                springs.pull_ends,
                 "force[a] += fx\n    force[a + 1] += fy",
                 "force[a] += 1.001 * fx\n    force[a + 1] += 1.001 * fy",
             ),
@@ -283,7 +283,7 @@ def test_beside_contacts_what_is_wrong_between_them_is_an_error(method: str, kin
         ("damped", "force"): ((full._evaluate, "tension = take(", "tension = 1.001 * take("),),
         ("dop853", "kick"): (KICK,),
         ("dop853", "drift"): (DRIFTS[dop853.dop853],),
-        ("dop853", "force"): ((packed_forces.pull_ends, "force[a] += fx\n    force[a + 1] += fy",
+        ("dop853", "force"): ((springs.pull_ends, "force[a] += fx\n    force[a + 1] += fy",
                                "force[a] += 1.001 * fx\n    force[a + 1] += 1.001 * fy"),),
     }  # fmt: skip
     with changed():

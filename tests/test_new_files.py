@@ -1,13 +1,12 @@
 """New files under names that nothing has: exclusive, whole, and short enough for a file system."""
 
 import os
-import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pygame
 import pytest
+from at_once import run_at_once
 from desk import Desk, bits, click, empty_world, tap
 
 from physicslab.files.replace import create_file
@@ -15,15 +14,14 @@ from physicslab.files.scene import file_stem, load_scene, save_last_good, save_s
 from physicslab.view.controls import saving
 
 AT_ONCE = """
-import sys, time
+import sys
 from pathlib import Path
 from physicslab.files.scene import save_last_good
 from physicslab.files.scene import save_new_scene
 from physicslab.files.scene import load_scene
 from physicslab.view.controls.saving import new_scene_paths
-folder, start = Path(sys.argv[1]), float(sys.argv[2])
-world = load_scene("drop")
-time.sleep(max(0.0, start - time.time()))
+folder, world = Path(sys.argv[1]), load_scene("drop")
+input("ready\\n")
 for _ in range(10):
     print(save_last_good(world, "boom", folder))
     print(save_new_scene(world, new_scene_paths(folder, "boom")))
@@ -31,11 +29,7 @@ for _ in range(10):
 
 
 def test_programs_that_save_at_once_get_a_file_each(tmp_path: Path) -> None:
-    start = str(time.time() + 6.0)
-    command = [sys.executable, "-c", AT_ONCE, str(tmp_path), start]
-    processes = [subprocess.Popen(command, stdout=subprocess.PIPE, text=True) for _ in range(4)]
-    said = [line for process in processes for line in process.communicate()[0].splitlines()]
-    assert [process.returncode for process in processes] == [0, 0, 0, 0]
+    said = run_at_once(AT_ONCE, str(tmp_path), count=4)
     assert len(said) == 80 and len(set(said)) == 80, "each has a file of its own"
     assert sorted(said) == sorted(map(str, tmp_path.iterdir())), "and nothing else is left"
 

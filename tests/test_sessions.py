@@ -11,6 +11,7 @@ from types import SimpleNamespace
 
 import pygame
 import pytest
+from at_once import run_at_once
 from desk import Desk, bits
 
 from physicslab.desktop import session_window, sessions
@@ -26,12 +27,11 @@ from physicslab.world import World
 ROOT = Path(__file__).parent.parent
 
 AT_ONCE = """
-import sys, time
+import sys
 from pathlib import Path
 from physicslab.desktop.sessions import Session
-folder, start, times = Path(sys.argv[1]), float(sys.argv[2]), int(sys.argv[3])
-while time.time() < start:
-    pass
+folder, times = Path(sys.argv[1]), int(sys.argv[2])
+input("ready\\n")
 for _ in range(times):
     found = Session.abandoned(folder)
     session = Session.begin(folder)
@@ -48,11 +48,8 @@ PROCESSES, TIMES = 4, 25
 def test_of_windows_that_start_at_once_each_state_is_offered_once(
     tmp_path: Path, processes: int = PROCESSES, times: int = TIMES
 ) -> None:
-    folder, start = tmp_path / "sessions", str(time.time() + 3.0)
-    command = [sys.executable, "-c", AT_ONCE, str(folder), start, str(times)]
-    programs = [subprocess.Popen(command, stdout=subprocess.PIPE, text=True) for _ in range(processes)]
-    lines = [line.split() for program in programs for line in program.communicate()[0].splitlines()]
-    assert [program.returncode for program in programs] == processes * [0]
+    folder = tmp_path / "sessions"
+    lines = [line.split() for line in run_at_once(AT_ONCE, str(folder), str(times), count=processes)]
     kept = sorted(name for what, name in lines if what == "kept")
     offered = [name for what, name in lines if what == "offered"]
     for session in Session.abandoned(folder):

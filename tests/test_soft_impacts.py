@@ -15,9 +15,11 @@ from physicslab.components import Mass, Transform, Velocity
 from physicslab.diagnostics.energy import measure_energy, measure_momentum
 from physicslab.diagnostics.warnings import find_warnings
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
+from physicslab.ecs.vector import Vector2
 from physicslab.kernels import near_counts
 from physicslab.kernels.constraint import impact_law
-from physicslab.prefabs import box, circle
+from physicslab.lab.worlds import floor
+from physicslab.prefabs import BodyOptions, box, circle, regular_polygon
 from physicslab.systems.standard import standard_systems
 
 G = 9.81
@@ -248,3 +250,24 @@ def test_an_oblique_impact_is_as_exact_with_finer_steps(dt: float) -> None:
     given = 2.0 * normal[0] * normal
     assert motion(world, other)[:2] == pytest.approx(given, abs=1e-12)
     assert motion(world, one)[:2] == pytest.approx((2.0, 0.0) - given, abs=1e-12)
+
+
+@pytest.mark.parametrize("restitution", [0.0, 0.5])
+@pytest.mark.parametrize("above", [0.005, 0.01, 0.03])
+def test_what_slides_over_a_floor_is_held_by_it_when_another_falls_on_it(
+    restitution: float, above: float
+) -> None:
+    # As it slides it would not meet the floor in that substep, which was known before the impact.
+    world, law = laboratory(gravity_mode="none"), BodyOptions(friction=0.0, restitution=restitution)
+    floor(world, friction=0.0, restitution=restitution)
+    half = 0.1 * math.sqrt(3.0)
+    low = regular_polygon(world, (0.0, half + 0.0015), corners=6, radius=0.2, **law)
+    high = circle(world, (0.0, 2.0 * half + 0.2015 + above), radius=0.2, **law)
+    world.component(low, Velocity).linear = Vector2(1.0, 0.0)
+    world.component(high, Velocity).linear = Vector2(1.0, -5.0)
+    deepest = 0.0
+    for _ in range(4):
+        world.step()
+        deepest = max(deepest, half - world.component(low, Transform).position.y)
+    assert world.component(low, Velocity).linear.y != 0.0 or restitution == 0.0
+    assert deepest < 1e-4  # up to 0.01

@@ -163,11 +163,15 @@ def test_the_true_error_of_contacts_is_within_a_factor_of_ten_of_the_estimate(
 
 
 @pytest.mark.slow
-def test_estimates_of_all_that_is_known_are_as_good_as_they_are_said_to_be() -> None:
-    rows = [row(name) for name, problem in PROBLEMS.items() if problem.search is None]
-    rows += [result_of(assess_contacts(case, engine)) for case in CONTACTS.values() for engine in OWN]
+def test_estimates_of_all_that_is_known_are_as_good_as_they_are_said_to_be(
+    pytestconfig: pytest.Config,
+) -> None:
+    every = 1 if pytestconfig.getoption("effort") >= 1.0 else 3
+    known = [name for name, problem in PROBLEMS.items() if problem.search is None][::every]
+    touching = [(case, engine) for case in CONTACTS.values() for engine in OWN][::every]
+    rows = [*map(row, known), *(result_of(assess_contacts(*both)) for both in touching)]
     found = summarise(rows)
-    assert found.known == len(rows) > 100 and found.holds
+    assert found.known == len(rows) > 100 // every and found.holds
     assert found.near >= 0.95 * found.known and found.largest <= 100.0
 
 

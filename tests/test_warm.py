@@ -81,12 +81,10 @@ def test_a_worker_that_fails_ends_the_wait_without_the_mark(mark: Path) -> None:
 
 
 def test_leaving_early_stops_the_workers(mark: Path) -> None:
-    start = time.monotonic()
     with Warmup(2, ASLEEP) as warmup:
         assert warmup.poll().done == 0
         processes = list(warmup._processes)
-    assert time.monotonic() - start < 20.0
-    assert all(process.poll() is not None for process in processes)
+    assert all(process.poll() for process in processes), "each was ended; asleep to its end it returns 0"
 
 
 def test_kernels_have_names_of_their_own() -> None:

@@ -116,13 +116,16 @@ def do_stage(
     none = np.zeros(0, np.bool_)
     course = np.array([part]), np.array([[1.0], [0.0], [0.0]]), *state.window, -1.0, True
     loaded = int(state.bodies.unequal and state.has_forces)
-    plan = 2, state.simulation.iterations or 0, h, h, state.moment, h, 1 if first else 0, h, loaded
+    last = max(state.substeps, 1) - 1  # of those a step
+    plan = (
+        last + 1, state.simulation.iterations or 0, h, h, state.moment, h, last if first else -1, h, loaded
+    )  # fmt: skip
     gravity = _NOTHING, _NOTHING, *inverse, 0.0, 0.0, speculative_margin(state, h), 0
     packed = _NO_VECTORS, np.zeros((0, 3), np.int64)
     rows = np.zeros(0, np.int64)
     sleepers = False, 0, none, _NOTHING, _NOTHING, none, none, rows, _NO_VECTORS, False
     *_, impacts, _, contacts.impulse_dt = soft.advance(
-        1, 1, 0, plan, course, -1, motion, _NOTHING, shapes_of(state), materials_of(state), inverse,
+        1, last, 0, plan, course, -1, motion, _NOTHING, shapes_of(state), materials_of(state), inverse,
         state.bodies.sub_integrated, acting or acting_in(state), gravity, packed, (_NOTHING, rows), sleepers,
         (0.0, 0.0), np.zeros((8, 0)), bounds_of(state), near, joints_in(state), contacts.opened, softness,
         contacts.impulse_dt, contacts.step_log, np.zeros(soft.COSTS, np.int64),

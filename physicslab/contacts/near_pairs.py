@@ -112,7 +112,7 @@ def add_constraints(state: State, h: float) -> None:
     while True:
         came = graph_colour.add_constraints(
             near_in(state), contacts.opened, contacts.sleeping, contacts.inactive, state.sleep.asleep,
-            motion_of(state), shapes_of(state), materials_of(state), inverse_in(state), h,
+            motion_of(state), shapes_of(state), materials_of(state), inverse_in(state), h, state.substeps,
         )  # fmt: skip
         if came != graph_colour.FULL:
             break

@@ -4,7 +4,14 @@ import math
 
 from physicslab.kernels import Rows, Vectors, always_inlined, inlined
 from physicslab.kernels.arguments import Bounds, Inverse, Materials, Motion, Near
-from physicslab.kernels.constraint.pair import frame_of, inverse_mass_of, moment_arms, response
+from physicslab.kernels.constraint.pair import (
+    frame_of,
+    inverse_mass_of,
+    moment_arms,
+    point_state,
+    response,
+    velocity_of,
+)
 from physicslab.kernels.geometry import apart, pair
 from physicslab.kernels.geometry.bend import note_bends
 from physicslab.kernels.geometry.cores import VERTICES
@@ -107,6 +114,32 @@ def slides_on(manifold: Manifold, one: Point, two: Point, travel: float) -> bool
     """Whether a pair has other points on a chain soon: it moves by ``travel`` [m], or is where that turns."""
     on_bend = one.feature >= VERTICES or (manifold.count == 2 and two.feature >= VERTICES)
     return bool(manifold.wall < -1 and (on_bend or travel > pair.SWEEP_THRESHOLD * manifold.size))
+
+
+@inlined
+def put_on_surfaces(manifold: Manifold, one: Point, two: Point) -> None:
+    """Move points that lie in gaps onto the surface of each body: where these close, both are one point."""
+    for j in range(manifold.count):
+        point = one if j == 0 else two
+        half = 0.5 * max(point.separation, 0.0)
+        point.arm_ax -= half * manifold.normal_x
+        point.arm_ay -= half * manifold.normal_y
+        point.arm_bx += half * manifold.normal_x
+        point.arm_by += half * manifold.normal_y
+
+
+@inlined
+def bounces_within(manifold: Manifold, one: Point, two: Point, motion: Motion, span: float) -> bool:
+    """Whether a second point, not met yet, comes within ``span`` seconds where it may bounce."""
+    if manifold.count < 2 or manifold.restitution == 0.0:
+        return False
+    v = velocity_of(motion.linear, motion.angular, manifold.a, manifold.b)
+    for j in range(2):
+        point = one if j == 0 else two
+        opens = point_state(frame_of(manifold, point), v).v
+        if point.normal_impulse == 0.0 and 0.0 < point.separation < -span * opens:
+            return True
+    return False
 
 
 @always_inlined
@@ -248,9 +281,12 @@ def _in_place(
 @always_inlined
 def touch(
     manifold: Manifold, one: Point, two: Point, way: Way, motion: Motion, shapes: Shapes, bounds: Bounds,
-    rotations: Vectors, h: float, start: float, speculative_margin: float,
+    rotations: Vectors, h: float, start: float, speculative_margin: float, rest: float,
 ) -> None:  # fmt: skip
-    """Find the points of a pair, of whatever shapes: what is fast for discs and boxes is chosen here."""
+    """Find the points of a pair, of whatever shapes: what is fast for discs and boxes is chosen here.
+
+    They are kept for this substep and ``rest`` more, in which a second one may be met.
+    """
     b = manifold.b
     body = kept_outline(b, motion.angle, shapes, rotations)
     if manifold.wall >= 0:
@@ -263,7 +299,7 @@ def touch(
     turn_b = h * motion.angular[b] if body.vertices > 1 else 0.0
     if not (has_own_way(shapes, manifold.a) and has_own_way(shapes, b)):
         pair.touch_rounded(
-            manifold, one, two, way, turn_a, turn_b, start, speculative_margin,
+            manifold, one, two, way, turn_a, turn_b, start, speculative_margin, rest,
             on_segment(other, manifold.wall), on_segment(body, manifold.wall), shapes.pool,
         )  # fmt: skip
         if manifold.wall < -1 and manifold.count > 0 and manifold.swept != 1:
@@ -275,7 +311,7 @@ def touch(
             )  # fmt: skip
     elif other.box and body.box:
         pair.touch_boxes(
-            manifold, one, two, way, turn_a, turn_b, start, speculative_margin, other, body, shapes.pool
+            manifold, one, two, way, turn_a, turn_b, start, speculative_margin, rest, other, body, shapes.pool
         )
     else:
         turn = turn_a if other.box else turn_b
@@ -337,6 +373,7 @@ def _has_few_rows(entities: Rows) -> bool:
 def find_contacts(
     near: Near, count: int, motion: Motion, shapes: Shapes, materials: Materials, inverse: Inverse,
     bounds: Bounds, first: bool, goes_on: bool, h: float, start: float, speculative_margin: float,
+    rest: float,
 ) -> int:  # fmt: skip
     """Find or refresh the contact points of the ``count`` scalar pairs; return how many have any.
 
@@ -346,7 +383,7 @@ def find_contacts(
     of now. Pairs whose count is negative are moved by event-driven stepping, and passed over. ``first`` marks
     the first substep of a step, in which records of impacts are cleared, and in which it ``goes_on`` from
     another one of the same call; ``speculative_margin`` is how far [m] the forces may bring two bodies
-    together within the substep.
+    together within the substep, which ``rest`` more may follow before points are found again.
     """
     position, linear, touching = motion.position, motion.linear, near.touching
     found, held, far = 0, count, 0
@@ -399,8 +436,9 @@ def find_contacts(
             )  # fmt: skip
         if known == _OUTDATED:
             touch(
-                manifold, one, two, way, motion, shapes, bounds, near.rotations, h, start, speculative_margin
-            )
+                manifold, one, two, way, motion, shapes, bounds, near.rotations, h, start, speculative_margin,
+                rest,
+            )  # fmt: skip
             if with_disc:
                 if not circular:
                     note_pose(manifold, way.dx, way.dy, 0.0, 0.0)

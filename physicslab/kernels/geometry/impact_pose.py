@@ -47,6 +47,17 @@ def _circle_on_box(circle: int, box: int, motion: Motion, shapes: Shapes, t: flo
 
 
 @inlined
+def _circle_on_circle(manifold: Manifold, motion: Motion, shapes: Shapes, t: float) -> ContactFrame[float]:
+    """Return where two circles meet."""
+    dx, dy = _apart(manifold.a, manifold.b, motion, t)
+    distance, nx, ny = math.sqrt(dx * dx + dy * dy), manifold.normal_x, manifold.normal_y
+    if distance > 0.0:
+        nx, ny = dx / distance, dy / distance
+    x, y = shapes.radius[manifold.a] * nx, shapes.radius[manifold.a] * ny
+    return ContactFrame(nx, ny, x, y, x - dx, y - dy)
+
+
+@inlined
 def _corner_on_face(
     manifold: Manifold, point: Point, motion: Motion, shapes: Shapes, t: float
 ) -> ContactFrame[float]:
@@ -115,9 +126,12 @@ def is_known(manifold: Manifold, point: Point, motion: Motion, shapes: Shapes) -
     """Whether normal and arms of a pair are those of the moment at which it meets.
 
     Those of discs are, and those of a disc and a box that does not turn; of rounded polygons, swept ones',
-    and of any shapes those of an inner disc.
+    and of any shapes those of an inner disc. Those of a pair that was not to meet, before other impacts, are
+    not.
     """
     a, b, first, vertices = manifold.a, manifold.b, shapes.first, shapes.vertices
+    if manifold.swept == 2:
+        return False
     if manifold.wall >= 0:
         return bool(vertices[b] == 1)
     if point.feature >= FACE and manifold.swept == 1:  # what the sweep of any two shapes has found
@@ -139,6 +153,8 @@ def meeting_at(
     """
     a, b, first, vertices = manifold.a, manifold.b, shapes.first, shapes.vertices
     if manifold.wall < 0:
+        if vertices[a] == 1 and vertices[b] == 1:
+            return _circle_on_circle(manifold, motion, shapes, t)
         if first[a] == BOX and vertices[b] == 1:
             return _circle_on_box(b, a, motion, shapes, t)
         if first[b] == BOX and vertices[a] == 1:

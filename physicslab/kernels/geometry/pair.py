@@ -292,11 +292,12 @@ def _stays_apart(
 @inlined
 def touch_rounded(
     manifold: Manifold, one: Point, two: Point, way: Way, turn_a: float, turn_b: float, start: float,
-    speculative_margin: float, a: Outline, b: Outline, pool: Vectors,
+    speculative_margin: float, rest: float, a: Outline, b: Outline, pool: Vectors,
 ) -> None:  # fmt: skip
     """Find the points of any two shapes, of which at most one is a disc: as they are now, or where they meet.
 
-    Both turn, by ``turn_a`` and ``turn_b`` [rad] in the substep.
+    Both turn, by ``turn_a`` and ``turn_b`` [rad] in the substep. A second point is one that may be met in it,
+    or in ``rest`` more substeps.
     """
     size = 2.0 * min(a.thin, b.thin)
     swing, swift = swing_of(a, turn_a) + swing_of(b, turn_b), is_swift(way, 2.0 * speculative_margin, a, b)
@@ -305,7 +306,7 @@ def touch_rounded(
     loaded = manifold.count > 0 and one.normal_impulse + two.normal_impulse > 0.0
     old = one.feature if loaded else 0  # of others a file keeps none
     before_1, before_2 = _impulses_of(one), _impulses_of(two)
-    found = touch_outlines(way, a, b, pool, near + travel, old)
+    found = touch_outlines(way, a, b, pool, near + travel + rest * travel, old)
     manifold.count, manifold.swept, manifold.size, manifold.gap = 0, 0, size, found.gap
     manifold.normal_x, manifold.normal_y = found.nx, found.ny
     fast = travel > SWEEP_THRESHOLD * size and not loaded
@@ -336,12 +337,13 @@ def touch_rounded(
 @inlined
 def touch_boxes(
     manifold: Manifold, one: Point, two: Point, way: Way, turn_a: float, turn_b: float, start: float,
-    speculative_margin: float, a: Outline, b: Outline, pool: Vectors,
+    speculative_margin: float, rest: float, a: Outline, b: Outline, pool: Vectors,
 ) -> None:  # fmt: skip
     """Find the points of two boxes: as they are now, or where they meet if they are fast for their size.
 
     ``speculative_margin`` is how far the forces may bring them together within the substep. Boxes whose
-    corners turn far in it are swept as any two shapes are.
+    corners turn far in it are swept as any two shapes are. A second point is one that may be met in it, or in
+    ``rest`` more substeps.
     """
     dx, dy, ux, uy = way
     size = 2.0 * min(min(a.half_x, a.half_y), min(b.half_x, b.half_y))
@@ -349,9 +351,11 @@ def touch_boxes(
     x, y, lead_x, lead_y, margin = dx, dy, 0.0, 0.0, CONTACT_MARGIN * size + travel + speculative_margin
     manifold.swept, manifold.size, manifold.gap = 0, size, -math.inf
     loaded = manifold.count > 0 and one.normal_impulse + two.normal_impulse > 0.0
-    if not loaded and swing_of(a, turn_a) + swing_of(b, turn_b) > _FAST * size:
-        touch_rounded(manifold, one, two, way, turn_a, turn_b, start, speculative_margin, a, b, pool)
+    swing = swing_of(a, turn_a) + swing_of(b, turn_b)
+    if not loaded and swing > _FAST * size:
+        touch_rounded(manifold, one, two, way, turn_a, turn_b, start, speculative_margin, rest, a, b, pool)
         return
+    room = rest * (travel + swing)
     if (
         loaded
         and is_swift(way, 2.0 * speculative_margin, a, b)
@@ -371,10 +375,12 @@ def touch_boxes(
             return
         lead_x, lead_y = (start + t) * ux, (start + t) * uy
         x, y = dx + lead_x, dy + lead_y
-        manifold.swept = 1
+        manifold.swept, room = 1, 0.0
     before_1, before_2 = _impulses_of(one), _impulses_of(two)
     old = one.feature if loaded and one.feature < FACE else 0  # of others a file keeps none
-    gap, nx, ny, count, first, second = box_box(x, y, ux, uy, a, b, margin, old)
+    gap, nx, ny, count, first, second = box_box(x, y, ux, uy, a, b, margin + room, old)
+    if gap > margin:
+        count = 0
     if not manifold.swept:
         manifold.gap = gap
     manifold.count = count

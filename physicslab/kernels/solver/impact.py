@@ -365,7 +365,7 @@ def _resolve_once(
             continue
         if window.start >= 0.0:  # in symplectic Euler the forces have acted already
             pull = 0.0
-        if manifold.swept == 2:
+        if manifold.swept == 2 and max(changed[a], changed[b]) < 0.0:
             one.ahead = two.ahead = 1
             noted[2 * k, LEFT_TO_SOLVER] = 0.0
             continue
@@ -386,6 +386,16 @@ def _resolve_once(
         noted[2 * k, LEFT_TO_SOLVER] = float(solved)
         left += solved
     return bounced, left, energetic, lowered, elastic
+
+
+@inlined
+def _meet_now(contacts: Contacts, noted: Vectors, changed: Numbers) -> None:
+    """Leave inelastic pairs to the solver of which a body has had an impact: they may meet sooner by now."""
+    for k in range(contacts.number):
+        p = contacts.touching[k]
+        hit = max(changed[int(noted[2 * k, A])], changed[int(noted[2 * k, B])]) >= 0.0
+        if hit and contacts.manifolds[p].restitution == 0.0:
+            contacts.points[2 * p].ahead = contacts.points[2 * p + 1].ahead = 0
 
 
 @always_inlined
@@ -424,6 +434,7 @@ def resolve_impacts(
             left = contacts.number
             break
     if impacts:
+        _meet_now(contacts, noted, changed)
         measure_again(contacts, motion)
     if left == 0:
         follow_drift(contacts, motion, window.end)

@@ -167,7 +167,7 @@ def _woken(near: Near, motion: Motion, inverse: Inverse, acting: Acting, sleeper
 @inlined
 def _made_wide(
     near: Near, motion: Motion, shapes: Shapes, materials: Materials, inverse: Inverse, sleepers: Sleepers,
-    opened: Rows, h: float,
+    opened: Rows, h: float, substeps: int,
 ) -> bool:  # fmt: skip
     """Put steady contacts into blocks; return whether there was room for them."""
     if near.counts[WIDE_COUNT] == 0 and near.counts[ACTIVE] < MIN_WIDE:
@@ -176,7 +176,7 @@ def _made_wide(
     if near.counts[WIDE_COUNT] > 0:
         came = add_to_blocks(
             near, opened, sleepers.pairs, sleepers.inactive, sleepers.asleep, motion, shapes, materials,
-            inverse, h,
+            inverse, h, substeps,
         )  # fmt: skip
     return came == ADDED
 
@@ -279,13 +279,16 @@ def _advance(
                     span,
                     course.start,
                     gravity.margin,
+                    plan.substeps,
                 )
                 if course.hooked:
                     counts[FOLLOWED] = 0  # what acts in between may change shapes
                 now = charge(cost, CONTACT, now)
             elif what == WIDEN:
                 if substep == plan.first:
-                    room = _made_wide(near, motion, shapes, materials, inverse, sleepers, opened, span)
+                    room = _made_wide(
+                        near, motion, shapes, materials, inverse, sleepers, opened, span, plan.substeps
+                    )
                     now = charge(cost, CONTACT, now)
                     why = ALL if room else BLOCKS_FULL
             elif what == WAKE:

@@ -57,19 +57,21 @@ def _solved(near: Near) -> Contacts:
 @always_inlined
 def find_touching(
     near: Near, motion: Motion, shapes: Shapes, materials: Materials, inverse: Inverse, bounds: Bounds,
-    first: bool, goes_on: bool, h: float, start: float, speculative_margin: float,
+    first: bool, goes_on: bool, h: float, start: float, speculative_margin: float, substeps: int,
 ) -> None:  # fmt: skip
     """Find where wide contacts touch now, activate proximity pairs, then find where scalar ones touch.
 
     The substep spans ``h`` seconds from ``start`` h before or after now. ``first`` marks the first substep of
-    a step, and that it ``goes_on`` from another one of the same call; ``speculative_margin`` is how far [m]
-    the forces may bring two bodies together within it.
+    a step of so many ``substeps``, and that it ``goes_on`` from another one of the same call;
+    ``speculative_margin`` is how far [m] the forces may bring two bodies together within it.
     """
     counts, manifolds, points, scalar = near.counts, near.manifolds, near.points, near.scalar
+    rest = 0.0
     if counts[WIDE_COUNT] > 0:
+        rest = substeps - 1.0 if first else 0.0  # of wide contacts points are found once a step
         before = counts[SCALAR]
         for slots in (near.discs, near.boxes):
-            refresh(slots, near, motion, shapes, inverse, bounds, first, h, start, speculative_margin)
+            refresh(slots, near, motion, shapes, inverse, bounds, first, h, start, speculative_margin, rest)
         came = counts[SCALAR] - before
         counts[WIDE_COUNT] -= came
         if came > 0:
@@ -84,7 +86,7 @@ def find_touching(
     )  # fmt: skip
     counts[ACTIVE] = find_contacts(
         near, counts[SCALAR], motion, shapes, materials, inverse, bounds, first, goes_on, h, start,
-        speculative_margin,
+        speculative_margin, rest,
     )  # fmt: skip
 
 

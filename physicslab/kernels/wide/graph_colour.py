@@ -6,7 +6,7 @@ from physicslab.kernels import Flags, Numbers, Plain, Rows, Vectors, inlined, ke
 from physicslab.kernels import near_counts as N
 from physicslab.kernels.arguments import Inverse, Materials, Motion, Near, named_near
 from physicslab.kernels.broad.near_pairs import sort_scalar
-from physicslab.kernels.geometry.contact import note_pose, slides_on
+from physicslab.kernels.geometry.contact import bounces_within, note_pose, put_on_surfaces, slides_on
 from physicslab.kernels.geometry.pair import CONTACT_MARGIN, SWEEP_THRESHOLD, WIDE_SHARE
 from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple, named_shapes
 from physicslab.kernels.records import Manifold, Manifolds, Point
@@ -83,9 +83,9 @@ def _free_slot(home: int, blocks: int, c: int, slots: Slots) -> int:
 
 @inlined
 def _may_enter(
-    slots: Slots, near: Near, p: int, motion: Motion, shapes: Shapes, asleep: Flags, h: float
+    slots: Slots, near: Near, p: int, motion: Motion, shapes: Shapes, asleep: Flags, h: float, substeps: int
 ) -> bool:
-    """Whether a contact is steady and of the kind of these blocks.
+    """Whether a contact is steady, for a step of so many ``substeps``, and of the kind of these blocks.
 
     One with a body that is ``asleep``, which it is about to wake, stays scalar.
     """
@@ -97,7 +97,8 @@ def _may_enter(
     travel = h * (abs(linear[j, 0] - linear[i, 0]) + abs(linear[j, 1] - linear[i, 1]))
     if asleep[i] or asleep[j] or slides_on(manifold, one, two, travel):
         return False
-    return _is_steady(manifold, one, two, motion.linear, h)
+    bounces = bounces_within(manifold, one, two, motion, substeps * h)
+    return _is_steady(manifold, one, two, motion.linear, h) and not bounces
 
 
 @inlined
@@ -115,7 +116,7 @@ def _first_colour(used: Masks, i: int, j: int, inverse_mass: Numbers) -> int:
 @inlined
 def _assign_colours(
     slots: Slots, blocks: int, opened: Rows, near: Near, motion: Motion, shapes: Shapes, materials: Materials,
-    inverse: Inverse, asleep: Flags, h: float,
+    inverse: Inverse, asleep: Flags, h: float, substeps: int,
 ) -> tuple[int, int]:  # fmt: skip
     """Put the steady contacts of one kind into blocks; return how many blocks there are, and how many came.
 
@@ -128,7 +129,7 @@ def _assign_colours(
     for k in range(near.counts[N.ACTIVE]):
         p = near.touching[k]
         manifold = near.manifolds[p]
-        if not _may_enter(slots, near, p, motion, shapes, asleep, h):
+        if not _may_enter(slots, near, p, motion, shapes, asleep, h, substeps):
             continue
         c = _first_colour(slots.used, manifold.a, manifold.b, inverse.mass)
         if c == COLOURS:
@@ -146,6 +147,8 @@ def _assign_colours(
             while empty < blocks and slots.colour[empty] >= 0:
                 empty += 1
         opened[c] = slot // WIDE
+        if slots.kind == BOX:
+            put_on_surfaces(manifold, near.points[2 * p], near.points[2 * p + 1])
         if slots.kind == BOX and manifold.found != 2:
             manifold.found = 2
             note_pose(
@@ -203,7 +206,7 @@ def _has_room(slots: Slots, blocks: int, active: int) -> bool:
 @inlined
 def add_to_blocks(
     near: Near, opened: Rows, sleeping: Rows, inactive: Flags, asleep: Flags,
-    motion: Motion, shapes: Shapes, materials: Materials, inverse: Inverse, h: float,
+    motion: Motion, shapes: Shapes, materials: Materials, inverse: Inverse, h: float, substeps: int,
 ) -> int:  # fmt: skip
     """Put steady contacts into blocks, as :func:`add_constraints` describes."""
     counts, discs, boxes = near.counts, near.discs, near.boxes
@@ -227,7 +230,7 @@ def add_to_blocks(
         for slots in (discs, boxes):
             which = N.DISC_BLOCKS + slots.kind
             counts[which], more = _assign_colours(
-                slots, counts[which], opened, near, motion, shapes, materials, inverse, asleep, h
+                slots, counts[which], opened, near, motion, shapes, materials, inverse, asleep, h, substeps
             )
             came += more
     if came > 0:
@@ -247,15 +250,16 @@ def add_to_blocks(
 def add_constraints(
     plain_near: Plain[Near], opened: Rows, sleeping: Rows, inactive: Flags, asleep: Flags,
     plain_motion: Plain[Motion], plain_shapes: ShapesTuple, plain_materials: Plain[Materials],
-    plain_inverse: Plain[Inverse], h: float,
+    plain_inverse: Plain[Inverse], h: float, substeps: int,
 ) -> int:  # fmt: skip
     """Put steady contacts into blocks; return what must be done first if that is not possible.
 
-    ``counts`` are those of :mod:`physicslab.kernels.wide.slots`. Returns ``ADDED``, or ``SPARSE`` where
-    too many slots are empty, or ``FULL`` where there is no room for those that may come. Empty blocks at
-    the end are dropped in any case, so that the result does not depend on the past.
+    It is the first of so many ``substeps`` of a step. ``counts`` are those of
+    :mod:`physicslab.kernels.wide.slots`. Returns ``ADDED``, or ``SPARSE`` where too many slots are empty, or
+    ``FULL`` where there is no room for those that may come. Empty blocks at the end are dropped in any case,
+    so that the result does not depend on the past.
     """
     return add_to_blocks(
         named_near(plain_near), opened, sleeping, inactive, asleep, Motion(*plain_motion),
-        named_shapes(plain_shapes), Materials(*plain_materials), Inverse(*plain_inverse), h,
+        named_shapes(plain_shapes), Materials(*plain_materials), Inverse(*plain_inverse), h, substeps,
     )  # fmt: skip

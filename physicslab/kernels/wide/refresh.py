@@ -110,7 +110,7 @@ def _refresh_boxes(slots: L.Slots, k: int, motion: Motion, tolerance: float) -> 
 @inlined
 def _find_again(
     slots: L.Slots, slot: int, near: Near, motion: Motion, shapes: Shapes, inverse: Inverse,
-    bounds: Bounds, h: float, start: float, speculative_margin: float,
+    bounds: Bounds, h: float, start: float, speculative_margin: float, rest: float,
 ) -> bool:  # fmt: skip
     """Find the points of a slot's pair in its present pose; return whether it keeps its slot."""
     p = slots.pair[slot]
@@ -123,14 +123,16 @@ def _find_again(
     )  # fmt: skip
     manifold.offset_x, manifold.offset_y = way.dx, way.dy
     turned = near.rotations
-    contact.touch(manifold, one, two, way, motion, shapes, bounds, turned, h, start, speculative_margin)
+    contact.touch(manifold, one, two, way, motion, shapes, bounds, turned, h, start, speculative_margin, rest)
     slides = contact.slides_on(manifold, one, two, abs(way.ux) + abs(way.uy))
-    if manifold.count == 0 or manifold.swept != 0 or slides:
+    bounces = contact.bounces_within(manifold, one, two, motion, h + rest * h)
+    if manifold.count == 0 or manifold.swept != 0 or slides or bounces:
         if manifold.count == 0:
             contact.forget_points(one, two)
         manifold.found, manifold.slot = 0, -1
         empty_slot(slots, slot)
         return False
+    contact.put_on_surfaces(manifold, one, two)
     contact.note_pose(manifold, way.dx, way.dy, motion.angle[a], motion.angle[b])
     contact.effective_masses(manifold, near.points, p, inverse)
     fill_points(slots, slot, manifold, one, two)
@@ -140,7 +142,7 @@ def _find_again(
 @inlined
 def refresh(
     slots: L.Slots, near: Near, motion: Motion, shapes: Shapes, inverse: Inverse,
-    bounds: Bounds, first: bool, h: float, start: float, speculative_margin: float,
+    bounds: Bounds, first: bool, h: float, start: float, speculative_margin: float, rest: float,
 ) -> None:  # fmt: skip
     """Find where the contacts of all blocks of a kind touch now.
 
@@ -165,7 +167,7 @@ def refresh(
                 if p < 0 or not (moved >> place) & 1:
                     continue
                 if not _find_again(
-                    slots, slot, near, motion, shapes, inverse, bounds, h, start, speculative_margin
+                    slots, slot, near, motion, shapes, inverse, bounds, h, start, speculative_margin, rest
                 ):
                     near.scalar[near.counts[SCALAR]] = p
                     near.counts[SCALAR] += 1

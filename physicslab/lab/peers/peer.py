@@ -322,10 +322,10 @@ class Peer(ABC):
 
 
 def find_contacts(world: World) -> None:
-    """Find the contacts of a world again, from where its bodies are now."""
+    """Find the contacts of a world from where its bodies are now; none is followed from an earlier pose."""
     world.synchronise()
     with world.active():
         world.contacts.fetch()  # else those of islands would be put in place of what is found, on the way
-        world.contacts.stale = True
+        world.contacts.clear()
         for stage in (Stage.BROAD_PHASE, Stage.CONTACT):
             world.schedule.run(stage, world, 0.0)

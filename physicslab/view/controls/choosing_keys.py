@@ -4,7 +4,8 @@ from collections.abc import Mapping
 
 import pygame
 
-from physicslab.view.controls.controls import ARROWS, CONTROLS, KEYS, Control
+from physicslab.view.controls.controls import CONTROLS, KEYS, Control
+from physicslab.view.controls.keyboard import ARROWS
 from physicslab.view.window.window import Window
 from physicslab.world import World
 

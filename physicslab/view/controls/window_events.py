@@ -13,9 +13,10 @@ from physicslab.view.canvas.keyboard import held_keys, usual_event
 from physicslab.view.controls import actions, drawing
 from physicslab.view.controls.choosing_keys import choose_key, usual
 from physicslab.view.controls.context import open_context, thing_at
-from physicslab.view.controls.controls import KEYS, RELEASES, open_menu, reaches_world
+from physicslab.view.controls.controls import KEYS, RELEASES, reaches_world
 from physicslab.view.controls.file_actions import open_file
 from physicslab.view.controls.impact_actions import clicked_impact, close_up
+from physicslab.view.controls.keyboard import open_menu
 from physicslab.view.controls.measuring import follow_pointer, let_instrument_go, take_end
 from physicslab.view.controls.picking import body_at
 from physicslab.view.controls.pouring import pour
