@@ -148,9 +148,9 @@ def kept_joints(state: State) -> list[tuple[int, str, list[float]]]:
 
 
 def restore_joints(state: State, kept: Sequence[tuple[int, str, Sequence[float]]], *sources: State) -> None:
-    """Give back impulses that :func:`kept_joints` returned, where bodies are now.
+    """Give back impulses that :func:`kept_joints` returned of ``sources``, where bodies are now.
 
-    Of several ``sources`` it is seen whether an edit has moved bodies since their last step.
+    An edit that has moved bodies since the last step of a source is seen before the next one.
     """
     state.joints.restore(kept)
     edited = any(_is_edited(source, state) for source in sources)
