@@ -296,6 +296,27 @@ def test_windows_that_were_shut_when_the_layout_was_reset_are_docked_after_the_n
     assert left == usual[0] and width < usual[2]
 
 
+def test_a_window_that_was_shown_in_a_narrow_world_alone_is_docked_in_a_wide_one(tmp_path: Path) -> None:
+    desk = sized(SIZE)
+    tap(desk, "u")
+    tap(desk, "u")  # the wide arrangement is not that of the beginning
+    canvas = desk.window.canvas
+    assert isinstance(canvas, PygameCanvas)
+    canvas.surface = pygame.Surface((640, 480), 0, 32)
+    desk.frames(SETTLED)
+    tap(desk, "z")
+    tap(desk, "z")
+    canvas.surface = pygame.Surface(SIZE, 0, 32)
+    desk.frames(SETTLED)
+    save_preferences(tmp_path / "preferences.json", desk.window)
+    again = sized(SIZE)
+    load_preferences(tmp_path / "preferences.json", again.window)
+    again.frames(SETTLED)
+    height = again.sandbox.interface.room()[3]
+    tap(again, "z")
+    assert again.sandbox.interface.room()[3] < height
+
+
 def test_a_window_that_was_docked_in_a_large_window_is_within_a_small_one(desk: Desk) -> None:
     room = desk.sandbox.interface.room()
     drag(desk, (rect_of(desk, "History").left + 40, rect_of(desk, "History").top + 10), (900, 640))

@@ -199,7 +199,10 @@ def test_time_that_was_dropped_while_the_physics_was_prepared_is_no_slow_compute
     desk, canvas = recorded(empty_world())
     desk.window.preparing = 3.0
     desk.frames(10, elapsed=0.2)
-    assert any("slow motion until then" in words for words in canvas.words)
+    assert any("slow motion until then (5 s)" in words for words in canvas.words)
+    desk.window.preparing = 0.0  # it takes longer than was thought
+    desk.frames(1, elapsed=0.2)
+    assert not any("(0 s)" in words for words in canvas.words)
     desk.window.preparing = None
     canvas.calls.clear()
     desk.frames(3)

@@ -354,6 +354,18 @@ def test_a_note_is_written_where_it_stands(desk: Desk) -> None:
     assert not desk.world.entities()
 
 
+def test_no_word_of_a_note_is_under_a_panel(desk: Desk) -> None:
+    left, top, width, height = desk.window.framing.room()
+    corner = left + width - 20.0, top + height - 10.0
+    (note,) = placed(desk, Note("It is written beside its place", desk.window.camera.to_world(corner)))
+    desk.frames(SETTLED)
+    rect = desk.window.measuring.rects[note]
+    assert pygame.Rect(left, top, width, height).contains(rect) and rect[2] > 100
+    desk.window.camera.centre += Vector2(-20, 0)
+    desk.frames(SETTLED)
+    assert desk.window.measuring.rects[note][0] > left + width, "out of sight it stays there"
+
+
 def test_keys_written_into_a_note_are_no_commands(desk: Desk) -> None:
     circle(desk.world, (-2, 0), radius=0.1)
     tap(desk, "w")

@@ -26,8 +26,6 @@ from physicslab.view.window.tour import Search, Tour
 from physicslab.view.window.window import OPENED, Action, Window
 from physicslab.world import World
 
-_AFTER_CLOSING = 3.0
-"""How long [s] after something was closed Esc does not quit."""
 _ZOOM_STEP = 3.0
 """How many notches of the wheel a key or a button zooms by."""
 _TEXT_SCALES = (0.8, 0.9, 1.0, 1.15, 1.3, 1.5, 1.75, 2.0)
@@ -157,11 +155,9 @@ def reset_layout(world: World, window: Window) -> None:
 def leave(world: World, window: Window) -> None:
     """Leave the help, the plot, the selection or the tool if there is one, else the window."""
     if _gave_up(world, window):
-        window.closed_at = window.now
-    elif window.now - window.closed_at < _AFTER_CLOSING:  # it was meant for that
-        window.notify("Esc again quits")
+        window.note_closed()
     else:
-        window.ask_to_close(world)
+        window.ask_to_close(world, twice=window.has_closed)
 
 
 def _gave_up(world: World, window: Window) -> bool:

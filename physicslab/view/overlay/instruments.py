@@ -15,7 +15,7 @@ from physicslab.state.attached import INSTRUMENTS, place_of
 from physicslab.systems.gate import GateSystem
 from physicslab.theme import Colour, Theme
 from physicslab.view.canvas.camera import Camera, Drawing
-from physicslab.view.canvas.canvas import Rect, TextStyle, draw_spots
+from physicslab.view.canvas.canvas import Rect, TextStyle, draw_spots, is_within
 from physicslab.view.canvas.drawable_text import drawable
 from physicslab.view.canvas.quantities import quantity, rounded_up
 from physicslab.view.overlay.arrows import even_dashes
@@ -136,10 +136,12 @@ def draw_instruments(
     labels: Labels,
     covered: Sequence[Rect],
     on: Drawing,
+    room: Rect | None = None,
 ) -> dict[int, Rect]:
     """Draw instruments with what they read; return where the words of each are [px].
 
-    Labels keep clear of all lines, of the bodies that points go with, of each other and of what is covered.
+    Labels keep clear of all lines, of the bodies that points go with, of each other and of what is covered;
+    a note whose place is in the room of the world [px], the picture if that is left out, is within it.
     """
     if not instruments:
         return {}
@@ -157,7 +159,8 @@ def draw_instruments(
     for one, pixels in shown:
         chosen = one.entity in selected or not one.entity
         if one.kind is Note:
-            rects[one.entity] = _draw_note(world, one, pixels["place"], chosen, on)
+            inside = room or (0, 0, *on.camera.size)
+            rects[one.entity] = _draw_note(world, one, pixels["place"], chosen, inside, on)
             taken.append(rects[one.entity])
             continue
         at, lines = _DRAW[one.kind](world, one, pixels, chosen, on)
@@ -237,15 +240,19 @@ def _draw_gate(world: World, one: Instrument, pixels: _Places, chosen: bool, on:
 _DRAW = {Ruler: _draw_ruler, Protractor: _draw_protractor, Gate: _draw_gate}
 
 
-def _draw_note(world: World, one: Instrument, at: _Pixels, chosen: bool, on: Drawing) -> Rect:
-    """Draw a note with its left upper corner at its place."""
+def _draw_note(world: World, one: Instrument, at: _Pixels, chosen: bool, room: Rect, on: Drawing) -> Rect:
+    """Draw a note with its left upper corner at its place, or as near to it as it fits into a room [px]."""
     text = world.component(one.entity, Note).text if one.entity else ""
     lines = [part for line in text.split("\n") for part in (textwrap.wrap(drawable(line), _LETTERS) or [""])]
     style = TextStyle(on.size, on.theme.text)
     height = on.canvas.text_size("Ag", style)[1]
     width = max((on.canvas.text_size(line, style)[0] for line in lines), default=0)
     left, top = round(at[0]), round(at[1])
-    rect = (left, top, width + 2 * _PAD, height * len(lines) + 2 * _PAD)
+    wide, high = width + 2 * _PAD, height * len(lines) + 2 * _PAD
+    if is_within((left, top), room):
+        left = max(min(left, room[0] + room[2] - wide), room[0])
+        top = max(min(top, room[1] + room[3] - high), room[1])
+    rect = (left, top, wide, high)
     body = world.component(one.entity, Note).place_body if one.entity else None
     if body is not None and world.has(body, Transform):
         middle = np.array(on.camera.to_screen(world.component(body, Transform).position))

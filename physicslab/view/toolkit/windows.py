@@ -40,7 +40,7 @@ NARROW = 6.0
 """Padding of panels that hold buttons alone [px]."""
 _TITLE = 6.0
 """Height of what a floating window has above what fills it, at most, in heights of the text."""
-_SECTION, _WINDOW = re.compile(r"^(?=\[)", re.MULTILINE), re.compile(r"\[Window\]\[(.*)\]\n")
+_SECTION, _WINDOW = re.compile(r"^(?=\[)", re.MULTILINE), re.compile(r"^\[Window\]\[(.*)\]$", re.MULTILINE)
 """A part of where windows lie begins with that; one of a window with its name."""
 _UNSEEN = "\u200b"
 """A space without width: it parts two signs ``#`` that Dear ImGui would take for a mark of its own."""
@@ -72,6 +72,11 @@ _KEPT = 4096
 @lru_cache(_KEPT)
 def _said(own: Language, words: str) -> str:
     return with_powers(drawable(own.reword(words)))
+
+
+def _identity(name: str) -> str:
+    """Return the part of a window's name by which Dear ImGui knows it."""
+    return name.rpartition("###")[2]
 
 
 class Spoken(NamedTuple):
@@ -133,7 +138,7 @@ class Windows:
         self._is_narrow = False
         self._raised: dict[str, object] = {}  # what each window showed when it was put in front
         self._put: set[str] = set()  # windows that were docked, as they stood nowhere before
-        self._moved: set[str] | None = None  # those that are where they are at first, since all were to be
+        self._placed: set[str] = set()  # windows with a place in the arrangement, by their identities
         self.room: Rect = (0, 0, 1 << 20, 1 << 20)
         self.language = language()
         self.do_next: Callable[..., object] = lambda action, *arguments: None
@@ -144,28 +149,28 @@ class Windows:
         self.places, self.words, self.rows, self.pictures, self.focused = {}, [], {}, [], ""
         self.spoken = {}
 
-    def rearrange(self, *, as_at_first: bool) -> None:
-        """Note that windows lie elsewhere: each where it is at first, even one that opens later, or not."""
-        self._moved = set() if as_at_first else None
+    def rearrange(self, arrangement: str) -> None:
+        """Note that windows lie as in an arrangement; others, even those that open later, as at first."""
+        self._placed = set(_WINDOW.findall(arrangement))
 
     def _when_put(self, name: str) -> imgui.Cond_:
         """Return when a window is put where it is at first."""
-        if self._moved is None or name in self._moved:
+        if _identity(name) in self._placed:
             return imgui.Cond_.first_use_ever
-        self._moved.add(name)
+        self._placed.add(_identity(name))
         return imgui.Cond_.always
 
     def arranged(self, arrangement: str) -> str:
-        """Return where windows lie without those that are shut since all are where they are at first.
+        """Return where windows lie, without those that were shown in another arrangement alone.
 
         Dear ImGui would have them float over the world from the next start on.
         """
-        if self._moved is None:
-            return arrangement
-        shown = (str(window.name) for window in imgui.get_current_context().windows if window.was_active)
-        put = {name.rpartition("###")[2] for name in (*self._moved, *shown)}
+        shown = (window.name for window in imgui.get_current_context().windows if window.was_active)
+        self._placed |= set(map(_identity, shown))
         parts = _SECTION.split(arrangement)
-        return "".join(part for part in parts if (found := _WINDOW.match(part)) is None or found[1] in put)
+        return "".join(
+            part for part in parts if (found := _WINDOW.match(part)) is None or found[1] in self._placed
+        )
 
     def said(self, words: str) -> str:
         """Return words in the language of the window, as they can be drawn."""

@@ -195,8 +195,8 @@ class Window:
         Where the rectangle begins that is being drawn around bodies [m].
     dashboard : Dashboard
         The graphs, meters and sliders that are shown, and what is recorded for them.
-    closed_at : float
-        When something was closed or given up last, by ``now`` [s].
+    has_closed : bool
+        Whether something was closed or given up: Esc, which does that, quits only at the second press then.
     pending : list of Action
         Actions of clicks on panels: they are done when the next frame begins.
     preparing : float, optional
@@ -267,7 +267,7 @@ class Window:
         self.context: Context | None = None
         self.band: Vector2 | None = None
         self.dashboard = Dashboard()
-        self.closed_at = float("-inf")
+        self.has_closed = False
         self.pending: list[Action] = []
         self.error_study, self.sharing, self.making = ErrorStudy(), Sharing(), Making()
         self.trust = TrustWatch()
@@ -318,8 +318,12 @@ class Window:
         """Give a part of the state another value, by its path from the window, as ``"pace.paused"``."""
         owner, _, name = path.rpartition(".")
         if path in OPENED and value is OPENED[path]:
-            self.closed_at = self.now
+            self.note_closed()
         setattr(attrgetter(owner)(self) if owner else self, name, value)
+
+    def note_closed(self) -> None:
+        """Note that something was closed or given up: the next Esc may be meant for that."""
+        self.has_closed, self._may_close_until = True, 0.0
 
     def is_open(self, panel: str) -> bool:
         """Whether a panel is open, one of ``OPENED``."""
@@ -394,8 +398,8 @@ class Window:
         chosen = self.selection.entities if self.lesson is None else ()
         return chosen[0] if self.pace.paused and len(chosen) == 1 and self.hand.entity is None else None
 
-    def ask_to_close(self, world: World) -> None:
-        """Close the window; where something would be lost, only at the second request within a while."""
+    def ask_to_close(self, world: World, *, twice: bool = False) -> None:
+        """Close the window; where something would be lost, or ``twice``, at the second request in a while."""
         reasons: list[str] = []
         if self.has_unsaved:
             reasons.append("its scene is kept and offered at the next start")
@@ -404,11 +408,12 @@ class Window:
             reasons.append(f"what was edited in {scene} is lost")
         if self.filming.running:
             reasons.append("the film is not finished")
-        if not reasons or self.now < self._may_close_until:
+        if not (reasons or twice) or self.now < self._may_close_until:
             self.closing = True
             return
         self._may_close_until = self.now + _PATIENCE
-        self.notify(f"Esc again closes the window; {', and '.join(reasons)}", _PATIENCE)
+        words = f"Esc again closes the window; {', and '.join(reasons)}" if reasons else "Esc again quits"
+        self.notify(words, _PATIENCE)
 
     def coming(self, world: World) -> float:
         """Return the time [s] that is about to be simulated in this frame."""

@@ -139,7 +139,7 @@ class Hud:
         self._prepared = window.preparing is not None
         if window.preparing is not None:
             slowly = ", slow motion until then" if dropped else ""
-            left = _ROUGHLY * math.ceil(window.preparing / _ROUGHLY)
+            left = _ROUGHLY * max(math.ceil(window.preparing / _ROUGHLY), 1)  # it is not 0 s while it goes on
             words = f"First start: preparing the physics{slowly} ({left:.0f} s)"
             found.append((words, theme.slow if dropped else theme.notice))
         elif dropped and not window.pace.paused:

@@ -229,7 +229,7 @@ class Interface:
         if event.type in (pygame.MOUSEMOTION, *_BUTTONS):
             self._window.pointer_beside_panel = self.toolkit.covers(event.pos, _BESIDE)
         if gives_up and taken:
-            self._window.closed_at = self._window.now
+            self._window.note_closed()
         saves = event.type == pygame.KEYDOWN and is_for_files(event)
         if (event.type == pygame.MOUSEBUTTONDOWN and not taken) or saves:
             refusal = self._finish_fields()
@@ -268,7 +268,7 @@ class Interface:
         if (width, window.arrangements[width]) != self._arranged:
             self._arranged = width, window.arrangements[width]
             self.toolkit.arrange(window.arrangements[width])
-            self.ui.rearrange(as_at_first=not window.arrangements[width])
+            self.ui.rearrange(window.arrangements[width])
         self._follow_keys()
         seen = self._state(world)
         late, is_new, self._figures = window.now - self._next, figures is not self._figures, figures

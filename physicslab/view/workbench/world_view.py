@@ -134,7 +134,8 @@ class WorldView:
         if state.writing is not None:
             shown = [one for one in shown if one.entity != state.writing.entity]
         chosen = window.selection.entities
-        state.rects = draw_instruments(world, shown, chosen, state.labels, covered, on)
+        room = window.framing.room()
+        state.rects = draw_instruments(world, shown, chosen, state.labels, covered, on, room)
         if state.hovered is not None:
             marks.draw_selection(world, (state.hovered,), on)
 
