@@ -363,7 +363,7 @@ def test_an_edit_that_puts_joints_far_apart_is_closed_at_once_in_every_copy(
     beside: bool, integrator: Any, tmp_path: Path
 ) -> None:
     """Copies, files, redone runs and new islands took the edited places for those of the last step: 480 J."""
-    laws = PhysicsConfig(gravity=(0, -1.6), linear_damping=2.0)
+    laws = PhysicsConfig(gravity=Vector2(0, -1.6), linear_damping=2.0)
     world = World(physics=laws, simulation=SimulationConfig(dt=0.005, substeps=8, integrator=integrator))
     heavy = box(world, (2.19, 1.78), width=0.73, height=0.35, mass=30, angle=-0.876, velocity=(1.45, 0.18))
     light = box(world, (0.256, 0.512), width=0.55, height=0.58, mass=0.1, angle=-0.88, velocity=(2.19, -1.06))
