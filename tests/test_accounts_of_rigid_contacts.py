@@ -9,9 +9,22 @@ import numpy as np
 import pytest
 
 from physicslab import World
-from physicslab.components import Drag, Mass, Material, Shape, Spring, Transform, Velocity
+from physicslab.components import (
+    Charge,
+    Drag,
+    Mass,
+    Material,
+    Medium,
+    Shape,
+    Spring,
+    Thrust,
+    Transform,
+    Velocity,
+)
 from physicslab.diagnostics.energy import Accounts, measure_account
+from physicslab.diagnostics.warnings import find_warnings
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
+from physicslab.prefabs import circle
 from physicslab.state.state import State
 from physicslab.stepping import rigid_motion
 from physicslab.stepping.rigid import Rigid
@@ -154,6 +167,34 @@ def test_moving_apart_what_overlaps_is_booked_as_overlap() -> None:
     assert isinstance(world.stepper, Rigid)
     assert account.energy["overlap"] == pytest.approx(world.stepper.energy_added, rel=1e-12)
     assert abs(account.energy["numerical"]) < 1e-14
+
+
+FORCES: dict[str, tuple[dict[str, Any], list[Any]]] = {
+    "thrust": ({}, [Thrust(force=(3.0, 50.0))]),
+    "drag": ({}, [Drag(linear=2.0, quadratic=1.0)]),
+    "magnet": ({"magnetic_field": 2.0}, [Charge(1.0)]),
+    "field": ({"electric_field": (3.0, 5.0)}, [Charge(1.0)]),
+    "damping": ({"linear_damping": 1.0}, []),
+    "spring": ({}, [Spring("b", anchor_b=(0.0, 3.0), rest_length=0.5, stiffness=20.0, damping=1.0)]),
+    "current": ({}, []),
+}
+
+
+@pytest.mark.parametrize("name", FORCES)
+def test_forces_that_store_nothing_give_nothing_where_bodies_are_moved_apart(name: str) -> None:
+    physics, parts = FORCES[name]
+    world = laboratory(**({"gravity": (0.0, 0.0)} | physics))
+    ball = circle(world, (0.0, 1.0), radius=0.2, velocity=(1.0, 2.0), name="b")
+    circle(world, (0.0, 1.3999), radius=0.2, mass=2.0, velocity=(1.0, 1.0))
+    for part in parts:
+        world.add(ball, part)
+    if name == "current":
+        world.spawn(Transform(), Shape.box(20, 20), Medium(viscosity=0.5, flow=(5.0, 9.0)))
+    found = after(world, 1 / 60).energy
+    assert found["numerical"] == pytest.approx(0.0, abs=1e-12)
+    assert (abs(found["overlap"]) > 1e-4) == (name in ("field", "spring"))
+    added = [warning for warning in find_warnings(world) if "moving bodies apart" in warning.what]
+    assert bool(added) == (name in ("field", "spring")), "a warning of what is rounding alone"
 
 
 @pytest.mark.parametrize(("kind", "lost"), [("box", 9.0), ("circle", 3.0)])

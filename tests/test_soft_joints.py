@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -9,8 +10,9 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
+from random_edits import bits
 
-from physicslab import World
+from physicslab import World, load_scene, save_scene
 from physicslab.components import (
     Gear,
     Held,
@@ -32,6 +34,7 @@ from physicslab.diagnostics.energy import measure_account, measure_energy, measu
 from physicslab.diagnostics.joints import JointState, joint_states
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.vector import Vector2
+from physicslab.history import History, SetField
 from physicslab.kernels.accounts import ANGULAR_MOMENTUM, ENERGY, JOINTS, MOTORS
 from physicslab.kernels.solver.finer import needed_factor
 from physicslab.prefabs import box, circle
@@ -352,3 +355,35 @@ def test_joints_that_an_edit_has_put_far_apart_leave_what_rests_at_rest(kind: An
     assert measure_energy(world).total < 1e-20
     (state,) = joint_states(world)
     assert state.stretch < 1e-6
+
+
+@pytest.mark.parametrize("integrator", ["auto", "leapfrog"])
+@pytest.mark.parametrize("beside", [False, True])
+def test_an_edit_that_puts_joints_far_apart_is_closed_at_once_in_every_copy(
+    beside: bool, integrator: Any, tmp_path: Path
+) -> None:
+    """Copies, files, redone runs and new islands took the edited places for those of the last step: 480 J."""
+    laws = PhysicsConfig(gravity=Vector2(0, -1.6), linear_damping=2.0)
+    world = World(physics=laws, simulation=SimulationConfig(dt=0.005, substeps=8, integrator=integrator))
+    heavy = box(world, (2.19, 1.78), width=0.73, height=0.35, mass=30, angle=-0.876, velocity=(1.45, 0.18))
+    light = box(world, (0.256, 0.512), width=0.55, height=0.58, mass=0.1, angle=-0.88, velocity=(2.19, -1.06))
+    last = world.spawn(Transform((-0.77, 0.064)), Velocity((1.17, 1.63), 2.0), Mass(1.0, 1.0))
+    world.spawn(Rod(light, heavy, anchor_a=(-0.008, 0)))
+    world.spawn(Rope(light, last, anchor_a=(0.1136, 0)))
+    for place in range(8 * beside):
+        box(world, (95 + 1.3 * place, 0.5), width=1, height=1)
+    history = History(world)
+    history.step(steps=5)
+    history.do(SetField(last, "Transform", "position", (1.506, 2.8)))
+    save_scene(world, tmp_path / "edited.json")
+    others = [world.copy(), load_scene(tmp_path / "edited.json")]
+    history.step(steps=2)
+    assert world.component(light, Velocity).angular == pytest.approx(-2.24, abs=0.01)
+    assert measure_account(world).energy["joints"] == pytest.approx(-0.043, abs=0.001)
+    end = bits(world)
+    history.undo()
+    history.redo()
+    assert bits(world) == end
+    for other in others:
+        other.run(steps=2)
+        assert bits(other) == end

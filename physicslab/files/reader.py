@@ -27,6 +27,7 @@ from physicslab.kernels.solver.impulse import MAX_SUBSTEP_FACTOR
 from physicslab.state.contents import LEVELS, SCENE_TEXTS, SHOWN, Desk, View
 from physicslab.state.joint_rows import KINDS
 from physicslab.state.remainders import Remainders
+from physicslab.stepping.accounting import restore_joints
 from physicslab.stepping.forces import MAX_STEPS
 from physicslab.stepping.island import KeptIsland
 from physicslab.systems.standard import standard_systems
@@ -143,7 +144,7 @@ def read_scene(document: object, source: str = "scene") -> World:
         except (ValueError, OverflowError) as error:
             esper.switch_world(before)
             raise checks.SceneError(f"{source}: contacts: {error}") from error
-        world.joints.restore(draft.joints)
+        restore_joints(world, draft.joints)
         restore_rests(world, draft.rests)
     if draft.remainders:
         world.remainders = Remainders.of_bodies(draft.remainders)

@@ -29,6 +29,7 @@ from physicslab.files.remainders import export_remainders
 from physicslab.state.contents import SCENE_TEXTS
 from physicslab.state.joint_rows import kinds_of
 from physicslab.state.state import State
+from physicslab.stepping.accounting import kept_joints
 from physicslab.stepping.island import KeptIsland
 from physicslab.stepping.planning import outlived
 from physicslab.world import World
@@ -86,7 +87,7 @@ class WorldSnapshot:
         members = world.islands.members
         kept = world.islands.contacts(world, rescaled=False) if members else KeptContacts.of(world.contacts)
         self.contacts = kept.as_contacts()
-        self.joints = list(world.joints.kept())
+        self.joints = kept_joints(world)
         parts: list[State] = [island.state for island in members] or [world]
         self.rests = [rest for part in parts for rest in export_rests(part)]
         # Driven bodies have others in each island, which keeps them.

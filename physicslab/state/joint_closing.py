@@ -46,6 +46,8 @@ def closing_places(state: State, least: float, *, limits: bool = False) -> tuple
         np.add.at(gradient, (owner, joints.a), pulls[:, AX : TURN_A + 1])
         np.add.at(gradient, (owner, joints.b), pulls[:, BX:])
         moved = (gradient * give)[held].reshape(-1, give.size)
+        if not (np.isfinite(moved).all() and np.isfinite(error).all()):
+            return None
         closing = np.linalg.lstsq(moved, -error[held], rcond=1e-6)[0].reshape(give.shape) * give
         # No farther at once than errors reach: rods in line do not say which way they would close.
         closing *= min(1.0, np.abs(error).sum() / max(np.abs(closing[:, :2]).max(), 1e-300))

@@ -93,9 +93,9 @@ class Joints:
     apart : int64 array (k, 2)
         The pairs of bodies a < b that do not touch each other, sorted: those of a joint, and all that welds
         make one thing of.
-    placed : bytes, optional
-        The places of bodies after the last step by soft contacts; ``None`` where it is not known whether they
-        were edited since, as after going back.
+    placed : bytes
+        The places of bodies after the last step by soft contacts; empty where it is not known whether they
+        were edited since.
     wholes : dict of int to int
         For each entity that is a part of such a thing, the first of its parts.
     """
@@ -105,7 +105,7 @@ class Joints:
         self._settings, self.beside_contacts, self.watched = list[bytes](), False, False
         self._entities = np.zeros(0, np.int64)
         self._joined: tuple[Any, ...] = ()
-        self.placed: bytes | None = b""
+        self.placed = b""
         self.wholes: dict[int, int] = {}
 
     def _take(self, joints: Sequence[Joint], rows: Sequence[Row]) -> None:
@@ -251,7 +251,7 @@ class Joints:
     def restore(self, kept: Sequence[tuple[int, str, Sequence[float]]]) -> None:
         """Give back what :meth:`kept` yielded; what no joint of now has is dropped."""
         held = {(entity, kind): impulses for entity, kind, impulses in kept}
-        self.impulse[:], self.placed = 0.0, None
+        self.impulse[:], self.placed = 0.0, b""
         self.buffers[0][:] = 0.0  # gradients: they are found again, where bodies are then
         for joint in self.joints:
             impulses = held.get((joint.entity, joint.kind.__name__), ())

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from physicslab.components import Held, Mass, Transform, Velocity
 from physicslab.kernels import digest, direct_entry, energy
@@ -125,19 +126,52 @@ def put_far_together(state: State, forces: Sequence[ForceSystem]) -> None:
     Their springs would leave it spinning: they pull along arms that have turned away before they let go. The
     energy goes to joints.
     """
-    joints, places = state.joints, _places(state)
-    known, joints.placed = joints.placed, places
-    if known == places or state.sleep.count or (known is None and joints.impulse.any()):
-        return
-    found = far_places(state, _FAR)
+    found = _far_places(state)
+    state.joints.placed = _places(state)
     if found is None:
         return
+    state.joints.impulse[:] = 0.0  # they held other places
     if not state.account.is_open:
         open_account(state, forces)
     before, transform = balance_of(state, forces), state.table(Transform)
     transform["position"][:], transform["angle"][:] = found
     state.account.sums[JOINTS] += np.subtract(balance_of(state, forces), before)
     state.contacts.stale = True
+
+
+def kept_joints(state: State) -> list[tuple[int, str, list[float]]]:
+    """Return the impulses of joints (``Joints.kept``) with which another world goes on as this one does.
+
+    There are none where an edit has put joints far apart: both worlds then put them together first.
+    """
+    return [] if _far_places(state) is not None else list(state.joints.kept())
+
+
+def restore_joints(state: State, kept: Sequence[tuple[int, str, Sequence[float]]], *sources: State) -> None:
+    """Give back impulses that :func:`kept_joints` returned of ``sources``, where bodies are now.
+
+    An edit that has moved bodies since the last step of a source is seen before the next one.
+    """
+    state.joints.restore(kept)
+    edited = any(_is_edited(source, state) for source in sources)
+    state.joints.placed = b"" if edited or not state.joints.impulse.any() else _places(state)
+
+
+def _is_edited(source: State, state: State) -> bool:
+    """Whether bodies are elsewhere in ``state`` than the last step of a source has left them."""
+    (now, rows), (then, others) = (
+        (one.table(Transform), one.entity_index.entities) for one in (state, source)
+    )
+    shared, here, there = np.intersect1d(rows, others, return_indices=True)
+    here, there = here[shared > 0], there[shared > 0]  # 0: a row without a body
+    same = all(np.array_equal(now[name][here], then[name][there]) for name in ("position", "angle"))
+    return not same or source.joints.placed != _places(source)
+
+
+def _far_places(state: State) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:
+    """Return places (rows, 2) [m] and angles (rows,) [rad] of what :func:`put_far_together` has to move."""
+    known = state.joints.placed == _places(state) or state.sleep.count
+    return None if known else far_places(state, _FAR)
 
 
 def note_places(state: State) -> None:

@@ -20,6 +20,7 @@ from physicslab.kernels.arguments import Motion
 from physicslab.kernels.clock import time_after
 from physicslab.state.remainders import Remainders, coordinate_keys
 from physicslab.state.state import State
+from physicslab.stepping.accounting import kept_joints, restore_joints
 from physicslab.stepping.breaks import Overloaded
 from physicslab.stepping.partition import MAX_BODIES, movable_in
 from physicslab.stepping.plan import StepPlan
@@ -207,7 +208,7 @@ def make_island(state: State, world: Part, entities: Rows, sources: Sequence[Sta
     KeptContacts.joined(kept, part.contacts.counts).restore(part)
     for source in sources:
         carry_sleep(source, part)
-    part.joints.restore([kept for source in sources for kept in source.joints.kept()])
+    restore_joints(part, [kept for source in sources for kept in kept_joints(source)], *sources)
     part.remainders = Remainders.joined([source.remainders for source in sources])
     return island
 

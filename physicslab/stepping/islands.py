@@ -22,6 +22,7 @@ from physicslab.state.masses import Diverged
 from physicslab.state.remainders import Remainders
 from physicslab.state.state import State
 from physicslab.stepping import partition
+from physicslab.stepping.accounting import kept_joints, restore_joints
 from physicslab.stepping.breaks import Overloaded
 from physicslab.stepping.island import (
     Island,
@@ -425,7 +426,8 @@ class Islands:
             self.contacts(state).restore(state)
             for island in self.members:
                 carry_sleep(island.state, state)
-            state.joints.restore([kept for island in self.members for kept in island.state.joints.kept()])
+            parts = [island.state for island in self.members]
+            restore_joints(state, [kept for part in parts for kept in kept_joints(part)], *parts)
             state.remainders = Remainders.joined([island.state.remainders for island in self.members])
         state.contacts.source, self.members, self._left = None, (), b""
 

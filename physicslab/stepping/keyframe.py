@@ -26,6 +26,7 @@ from physicslab.state.account import KeptAccount
 from physicslab.state.contents import SCENE_TEXTS
 from physicslab.state.remainders import Remainders
 from physicslab.state.state import State
+from physicslab.stepping.accounting import kept_joints, restore_joints
 from physicslab.stepping.island import Island, Part
 from physicslab.stepping.islands import Islands
 from physicslab.stepping.plan import StepPlan
@@ -175,7 +176,7 @@ class Keyframe:
         before = (last._contacts, last._sleep) if last is not None else (None, None)
         self._contacts: KeptContacts = KeptContacts.of(world.contacts, before[0])
         self._sleep: KeptSleep = KeptSleep.of(world.sleep, before[1])
-        self._joints = list(world.joints.kept())
+        self._joints = kept_joints(world)
 
     def take_records(self, world: Kept) -> None:
         """Keep what the systems of a world have recorded by now."""
@@ -233,7 +234,7 @@ class Keyframe:
             world.adopt(self._plan, self._remade)
         self._contacts.restore(world)
         self._sleep.restore(world, there)
-        world.joints.restore(self._joints)
+        restore_joints(world, self._joints)
         for now, then in zip((world.bodies.force, world.bodies.torque), self._forces, strict=True):
             _put(then, now, there)
         for system in world.schedule.running if self._own else ():

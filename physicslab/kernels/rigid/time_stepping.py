@@ -10,7 +10,8 @@ of order one.
 import math
 
 from physicslab.kernels import Numbers, Vectors, always_inlined, inlined
-from physicslab.kernels.accounts import HAND, MOTORS
+from physicslab.kernels.accounts import ENERGY, HAND, MOTORS
+from physicslab.kernels.forces.budget import ACCOUNTS
 from physicslab.kernels.forces.force_calls import accelerate
 from physicslab.kernels.joints.layout import ENDS, FIRST, PLACES, ROWS
 from physicslab.kernels.length import length_of
@@ -129,11 +130,18 @@ def take_work(
     Where it is to ``pay`` for it, what was added is taken from the kinetic energy of the bodies that hang
     together by the ``count`` points: all their speeds are lowered by one factor, so that what slides and what
     rests does so still. Work beyond their energy is returned; then by how much the energy has
-    changed, be it that it was less.
+    changed, be it that it was less. Work against forces that store none, as a thrust, adds nothing.
     """
-    rows, island, push, added, change = of.rows, room.v, room.acceleration, 0.0, 0.0
-    accelerate(before, v, room.q, of.inverse_mass, of.damping, of.calls)
-    accelerate(q, v, push, of.inverse_mass, of.damping, of.calls)
+    rows, island, push, way, change = of.rows, room.v, room.acceleration, room.rates[1], 0.0
+    for i in range(len(q)):  # the speed of a move that takes a second
+        way[i] = q[i] - before[i]
+    accelerate(before, way, room.q, of.inverse_mass, of.damping, of.calls)
+    accelerate(q, way, push, of.inverse_mass, of.damping, of.calls)
+    for account in range(
+        3 * rows + 1, len(q), ACCOUNTS
+    ):  # behind the clock: what forces that store none give
+        change += 0.5 * (room.q[account + ENERGY] + push[account + ENERGY])
+    added = 0.0 if pay else change
     _find_islands(of, points, count, island)
     for first in range(rows):
         work, energy = 0.0, 0.0
@@ -141,7 +149,7 @@ def take_work(
             for k in range(3 if island[row] == first else 0):
                 i = 2 * row + k if k < 2 else 2 * rows + row
                 if of.inverse_mass[i] > 0.0:
-                    work -= 0.5 * (room.q[i] + push[i]) * (q[i] - before[i]) / of.inverse_mass[i]
+                    work -= 0.5 * (room.q[i] + push[i]) * way[i] / of.inverse_mass[i]
                     energy += 0.5 * v[i] * v[i] / of.inverse_mass[i]
         if pay and work > 0.0:
             share = math.sqrt(max(1.0 - work / energy, 0.0)) if energy > 0.0 else 0.0
