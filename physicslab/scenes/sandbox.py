@@ -3,7 +3,7 @@
 import math
 
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
-from physicslab.prefabs import box, circle, pendulum
+from physicslab.prefabs import BodyOptions, box, circle, pendulum
 from physicslab.scenes.scene import Scene
 from physicslab.state.contents import Contents
 
@@ -20,8 +20,12 @@ from physicslab.state.contents import Contents
     simulation=SimulationConfig(sleeping=True),
 )
 def sandbox(world: Contents) -> None:
-    box(world, (0.0, -0.2), width=11.6, height=0.4, static=True, friction=0.6, restitution=1.0, name="floor")
-    box(world, (-4.0, 0.9), width=3.2, height=0.16, angle=-0.42, static=True, friction=0.6, restitution=1.0, name="ramp")
+    # Of a pair the lower restitution counts: what falls here bounces as its own says.
+    for name, place, width, height, angle in (
+        ("floor", (0.0, -0.2), 11.6, 0.4, 0.0), ("ramp", (-4.0, 0.9), 3.2, 0.16, -0.42),
+    ):  # fmt: skip
+        made = BodyOptions(name=name, angle=angle, static=True, friction=0.6, restitution=1.0)
+        box(world, place, width=width, height=height, **made)
     for n, radius in enumerate((0.22, 0.3, 0.18)):
         position = (-5.1 + 0.62 * n, 2.2 - 0.28 * n)
         circle(world, position, radius=radius, mass=5.0 * math.pi * radius**2, restitution=0.3)
