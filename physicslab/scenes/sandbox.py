@@ -20,7 +20,7 @@ from physicslab.state.contents import Contents
     simulation=SimulationConfig(sleeping=True),
 )
 def sandbox(world: Contents) -> None:
-    # Of a pair the lower restitution counts: what falls here bounces as its own says.
+    # The lower restitution of a pair counts: what falls here bounces as its own says.
     for name, place, width, height, angle in (
         ("floor", (0.0, -0.2), 11.6, 0.4, 0.0), ("ramp", (-4.0, 0.9), 3.2, 0.16, -0.42),
     ):  # fmt: skip
