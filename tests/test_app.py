@@ -188,19 +188,19 @@ type EachFrame = Callable[[Callable[[Display, int], None]], None]
 
 def test_the_window_opens_on_the_playground_and_escape_closes_it(each_frame: EachFrame) -> None:
     captions: list[str] = []
-    pressed: list[float] = []
+    pressed: list[int] = []
 
     def deed(display: Display, frame: int) -> None:
         captions.append(pygame.display.get_caption()[0])
         assert pygame.display.get_window_size() == (1280, 720)
-        now = time.perf_counter()
-        if frame >= 10 and (not pressed or now - pressed[-1] > 1.2):  # Esc acts again after a second
-            pressed.append(now)
+        if frame >= 10 and frame % 4 == 0:
+            pressed.append(frame)
             press(pygame.K_ESCAPE)
 
     each_frame(deed)
     assert open_window(None) == 0
-    assert len(pressed) == 2  # the first puts the cards of the first minute away
+    # The first puts the cards of the first minute away; the second may have been meant for them.
+    assert len(pressed) == 3
     assert captions[0] == "PhysicsLab" and captions[-1] == "Sandbox - PhysicsLab"
     assert not pygame.display.get_init()
 
