@@ -4,6 +4,7 @@ import io
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pygame
 import pytest
 
@@ -58,7 +59,9 @@ def test_a_notebook_shows_what_is_kept_in_it(path: Path, pytestconfig: pytest.Co
         kept = fresh
     assert texts(fresh) == texts(kept) != []
     figures = pictures(fresh)
-    assert [figure.get_size() for figure in figures] == [figure.get_size() for figure in pictures(kept)]
+    sizes = [[figure.get_size() for figure in shown] for shown in (figures, pictures(kept))]
+    # Numbers along an axis of the time that runs took are now longer, now shorter.
+    assert np.allclose(sizes[0], sizes[1], rtol=0.0, atol=9.0), sizes
     assert figures
     for figure in figures:
         width, height = figure.get_size()
