@@ -525,6 +525,25 @@ def test_springs_too_fast_for_steps_leave_the_others_in_the_loop(damping: float)
     assert bits(world) == bits(again)
 
 
+@pytest.mark.parametrize(("bodies", "followed"), [(10, False), (200, True)])
+def test_a_large_net_may_take_more_steps_than_a_small_one(bodies: int, followed: bool) -> None:
+    """The other method has equations for all of it: with thousands of bodies a step took 31 s."""
+    places = []
+    for substeps in (4, 8):
+        world = far_floor(open_space(substeps=substeps))
+        net = [circle(world, (0.3 * i, 0.0), radius=0.1, mass=1.0) for i in range(bodies)]
+        for a, b in pairwise(net):
+            strong = 2e4 if a == net[0] else 0.0
+            world.spawn(Spring(a, b, rest_length=0.25, stiffness=100.0, damping=strong))
+        world.synchronise()
+        rows = np.ones(len(world.bodies.inverse_mass), np.bool_)
+        (group,) = spring_groups(world, world.schedule.forces, rows)
+        assert (group.steps > 0) == followed
+        world.run(seconds=0.1)
+        places.append(world.table(Transform)["position"].copy())
+    assert np.allclose(places[0], places[1], rtol=0.0, atol=1e-6)
+
+
 def test_a_fast_pair_is_where_it_is_by_itself() -> None:
     """Two discs on a spring of 1e4 N/m swing by cos(w t), whatever the steps of others."""
     world = with_fast_pair(1e4, 0.0)

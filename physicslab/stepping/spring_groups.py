@@ -22,6 +22,9 @@ _RESOLVED = 0.26
 of contacts within four substeps is 1e-5 of that (docs/decisions/springs-beside-contacts.md)."""
 _DAMPED = 1.0
 """The same for rates of decay, whose exponential function a kick has."""
+_FEW = 64
+"""Bodies up to which ``MAX_STEPS`` take longer than ``implicit_midpoint``. Its equations of a net take as the
+square of their number, so more bodies may take more steps: 4,363 of them 0.18 s a step, not 31."""
 _MULTIPLIED = 8
 """How often x is multiplied where bounds on rates are made closer: for nets of all masses within 4 %."""
 _BEYOND = MAX_STEPS
@@ -112,7 +115,10 @@ def spring_groups(state: State, forces: Sequence[ForceSystem], rows: NDArray[np.
     half, substeps = 0.5 * state.simulation.dt / state.simulation.substeps, state.simulation.substeps
     decay = damped + dragged
     rate = np.maximum(swing, decay)
-    too_fast = [2 * substeps * steps_needed(one, half, WELL_RESOLVED) > MAX_STEPS for one in rate.tolist()]
+    too_fast = [
+        _is_too_fast(steps_needed(one, half, WELL_RESOLVED), 2 * substeps, coupled)
+        for one, coupled in zip(rate.tolist(), np.bincount(of, minlength=len(labels)).tolist(), strict=True)
+    ]
     sprung = np.zeros(len(labels), np.bool_)
     sprung[of[np.isin(moving, np.concatenate((a, b)))]] = True
     swing, decay, rate = (np.where(sprung, rates, 0.0) for rates in (swing, decay, rate))
@@ -132,6 +138,11 @@ def spring_groups(state: State, forces: Sequence[ForceSystem], rows: NDArray[np.
         most = 0 if kind == _BEYOND else max(steps[label] for label in chosen)
         groups.append(SpringGroup(part, most, float(rate[chosen].max())))
     return groups
+
+
+def _is_too_fast(needed: int, flows: int, coupled: int) -> bool:
+    """Whether ``coupled`` bodies whose flows, so many a step, need so many steps have another method."""
+    return flows * needed > MAX_STEPS * max(1.0, coupled / _FEW) or 2 * needed > MAX_STEPS
 
 
 def _closer(
