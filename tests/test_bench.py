@@ -307,6 +307,16 @@ def test_energy_that_comes_from_nothing_is_seen_as_a_share_of_the_motion() -> No
     assert energy_gained(0.1).measure(world, before) == pytest.approx((4.0 - 1.0) / 9.0)
 
 
+def test_what_rests_by_the_first_look_has_not_gained_without_end() -> None:
+    world = World()
+    body = circle(world, (0.0, 0.0), radius=0.1, mass=2.0, velocity=(3.0, 0.0))
+    before = Moment.of(world)
+    for speed in (0.0, 1e-3, 0.0):
+        world.component(body, Velocity).linear = Vector2(speed, 0.0)
+        before.follow(world)
+    assert energy_gained(0.1).measure(world, before) == pytest.approx(1e-6 / 9.0)
+
+
 def test_a_random_scene_gains_no_energy_unless_something_drives_it() -> None:
     drawn = [random_scene(1, number) for number in range(60)]
     for scene, features in drawn:

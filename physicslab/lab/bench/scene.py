@@ -114,7 +114,9 @@ def _energy(world: World, before: Moment) -> float:
 
 
 def _energy_gained(world: World, before: Moment) -> float:
-    return before.gained / before.kinetic if before.gained > 0.0 else 0.0
+    # A scene that rests by the first look has moved before, and lost that.
+    most = max(before.kinetic, before.energy - before.least)
+    return before.gained / most if before.gained > 0.0 else 0.0
 
 
 def _kinetic_energy(world: World, before: Moment) -> float:
@@ -141,7 +143,7 @@ energy_change = partial(Quality, "energy change", "", measure=_energy)
 
 energy_gained = partial(Quality, "energy gained", "", measure=_energy_gained, when="end")
 """Returns by how much the energy rose where it can only fall as a quality, with its limit, as a share of the
-largest kinetic energy."""
+largest kinetic energy or of what was lost, if that is more."""
 
 
 def at_rest(energy: float, drift: float) -> tuple[Quality, Quality]:
