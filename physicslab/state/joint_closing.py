@@ -21,6 +21,8 @@ _APART, _MOST_ROWS = 1e-9, 400
 def closing_places(state: State, least: float, *, limits: bool = False) -> tuple[Numbers, Numbers] | None:
     """Return places (rows, 2) [m] and angles (rows,) [rad] at which joints hold; ``None`` if none is found.
 
+    Heavy bodies are moved least. Where light ones between them leave no way, all move as if they were equal.
+
     Parameters
     ----------
     state : State
@@ -30,10 +32,22 @@ def closing_places(state: State, least: float, *, limits: bool = False) -> tuple
     limits : bool
         Whether limits are kept too, and ropes are no longer than they are.
     """
-    joints, bodies, transform = state.joints, state.bodies, state.table(Transform)
+    mass, inertia = state.bodies.inverse_mass, state.bodies.inverse_inertia
+    found = _closed(state, least, limits, mass, inertia)
+    if found is None:
+        scale = np.where(mass > 0.0, mass, 1.0)
+        found = _closed(state, least, limits, mass / scale, inertia / scale)
+    return found
+
+
+def _closed(
+    state: State, least: float, limits: bool, mass: Numbers, inertia: Numbers
+) -> tuple[Numbers, Numbers] | None:
+    """Return places and angles at which joints hold, found by these inverse masses and moments (rows,)."""
+    joints, transform = state.joints, state.table(Transform)
     owner = state.joints.row
     position, angle = transform["position"].copy(), transform["angle"].copy()
-    give = np.sqrt(np.stack((bodies.inverse_mass, bodies.inverse_mass, bodies.inverse_inertia), axis=1))
+    give = np.sqrt(np.stack((mass, mass, inertia), axis=1))
     for _ in range(_TURNS):
         terms = measured_terms(state, position, angle)
         error = errors_of_rows(state, terms)
