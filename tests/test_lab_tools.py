@@ -307,7 +307,7 @@ def test_the_gallery_has_a_card_with_a_picture_for_each_scene_and_opens_it() -> 
     titles = [scene.title for scene in SCENES.values()]
     assert all(f"Scene: {title}" in desk.ui.places for title in titles)
     desk.frames(20)
-    shown = desk.ui.pictures
+    (shown,) = desk.ui.pictures.values()
     assert len(shown) >= 6
     for surface, _, _ in shown:
         assert len(np.unique(pygame.surfarray.array2d(surface))) > 3, "something is to be seen in it"
