@@ -55,9 +55,8 @@ def joint_warnings(world: World) -> Iterator[ModelWarning]:
     figures, dependent = figures_of(world), _dependent(world) & _acts(world)
     worst = int(np.argmax(np.where(moves, figures.stretch / figures.size, -1.0)))
     stretch, limit = float(figures.stretch[worst]), STRETCH_LIMIT * float(figures.size[worst])
-    if stretch > limit:
-        # Other steppers than the soft one close what can be closed, to rounding.
-        told = bool(dependent.any()) or not isinstance(world.stepper, Soft) or _contradict(world, limit)
+    told = stretch > limit and (bool(dependent.any()) or _contradict(world, limit))
+    if stretch > limit and (told or isinstance(world.stepper, Soft)):  # others close what can be closed
         what = sentence("contradicts") if told else sentence("does_not_hold")
         setting = "" if told else f"simulation.substeps = {_substeps(world, float(figures.size[worst]))}"
         if (
