@@ -62,7 +62,7 @@ def closing_places(
 def _closed(
     state: State, least: float, limits: bool, start: tuple[Numbers, Numbers], give: Numbers
 ) -> tuple[Numbers, Numbers] | None:
-    """Return places and angles at which joints hold, found with these inverse masses and moments (rows, 3)."""
+    """Return places and angles at which joints hold, found with inverse masses and moments ``give``."""
     joints, owner = state.joints, state.joints.row
     position, angle = (values.copy() for values in start)
     give = np.sqrt(give)
