@@ -1,5 +1,6 @@
 """What is told of joints: those in line, those that contradict each other, those that do nothing."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -306,3 +307,21 @@ def test_what_soft_joints_take_of_bodies_that_bounce_is_told(contacts: str) -> N
     assert bool(warned) == (contacts == "soft")
     if warned:
         assert warned[0].setting == 'simulation.contacts = "rigid"'
+
+
+def test_what_is_light_before_a_heavy_load_is_no_contradiction_and_the_substeps_that_are_named_hold() -> None:
+    """The rods were apart by metres and said to contradict each other, and no setting to help."""
+    world = World(simulation=SimulationConfig(contacts="soft"))
+    box(world, (0.0, -9.0), width=9.0, height=1.0, static=True)
+    for x, mass, above in ((1.0, 1.0, None), (2.0, 1e6, 1)):
+        circle(world, (x, 0.0), radius=0.1, mass=mass, name=f"ball {x:g}")
+        world.spawn(Rod(a=above and "ball 1", b=f"ball {x:g}"))
+    world.mark()
+    world.run(seconds=1.0)
+    (advice,) = [one for one in find_warnings(world) if "does not hold what it joins" in one.what]
+    assert not [one for one in find_warnings(world) if "contradicts" in one.what]
+    assert (advice.value or 0.0) > 1.0 and advice.setting == "simulation.substeps = 74"
+    world.reset()
+    world.simulation = replace(world.simulation, substeps=74)
+    world.run(seconds=1.0)
+    assert not [*find_warnings(world)] and max(joint_figures.figures_of(world).stretch) < 1e-4

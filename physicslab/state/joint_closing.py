@@ -32,6 +32,8 @@ def closing_places(
 ) -> tuple[Numbers, Numbers] | None:
     """Return places (rows, 2) [m] and angles (rows,) [rad] at which joints hold; ``None`` if none is found.
 
+    Heavy bodies are moved least. Where light ones between them leave no way, all move as if they were equal.
+
     Parameters
     ----------
     state : State
@@ -45,12 +47,24 @@ def closing_places(
     give : float64 array (rows, 3), optional
         Inverse masses along x and y [1/kg] and inverse moments of inertia [1/(kg m^2)], if others than those.
     """
-    joints, bodies, transform = state.joints, state.bodies, state.table(Transform)
-    owner = state.joints.row
+    transform = state.table(Transform)
     begin = (transform["position"], transform["angle"]) if start is None else start
-    position, angle = (values.copy() for values in begin)
-    if give is None:
-        give = np.stack((bodies.inverse_mass, bodies.inverse_mass, bodies.inverse_inertia), axis=1)
+    if give is not None:
+        return _closed(state, least, limits, begin, give)
+    mass, inertia = state.bodies.inverse_mass, state.bodies.inverse_inertia
+    give = np.stack((mass, mass, inertia), axis=1)
+    found = _closed(state, least, limits, begin, give)
+    if found is None:
+        found = _closed(state, least, limits, begin, give / np.where(mass > 0.0, mass, 1.0)[:, None])
+    return found
+
+
+def _closed(
+    state: State, least: float, limits: bool, start: tuple[Numbers, Numbers], give: Numbers
+) -> tuple[Numbers, Numbers] | None:
+    """Return places and angles at which joints hold, found with inverse masses and moments ``give``."""
+    joints, owner = state.joints, state.joints.row
+    position, angle = (values.copy() for values in start)
     give = np.sqrt(give)
     for _ in range(_TURNS):
         terms = measured_terms(state, position, angle)
