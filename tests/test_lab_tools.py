@@ -291,7 +291,7 @@ def test_a_scene_that_is_left_alone_is_closed_at_once_and_one_that_was_edited_as
     desk.frames(2)
     desk.key("escape")
     desk.frames(2, FRAME)
-    assert not desk.window.closing and "Esc again" in desk.window.notice
+    assert not desk.window.closing and "Once more" in desk.window.notice
     desk.key("escape")
     desk.frames()
     assert desk.window.closing
