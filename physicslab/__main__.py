@@ -12,12 +12,13 @@ def run() -> int:
             from physicslab.cli import main
 
             return main()
-    except KeyboardInterrupt:
+    except KeyboardInterrupt as error:
         from physicslab.commands import tell
-        from physicslab.commands.interrupts import INTERRUPTED
+        from physicslab.commands.interrupts import told
 
-        tell("physicslab: interrupted")
-        return INTERRUPTED
+        words, status = told(error)
+        tell(f"physicslab: {words}")
+        return status
 
 
 if __name__ == "__main__":

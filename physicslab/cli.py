@@ -8,7 +8,7 @@ from importlib.metadata import PackageNotFoundError
 
 import physicslab
 from physicslab.commands import FAILED, USAGE, CommandError, command, require_window, tell
-from physicslab.commands.interrupts import INTERRUPTED
+from physicslab.commands.interrupts import told
 from physicslab.commands.parsers import WindowParser, completion, manual, parser_of
 from physicslab.commands.usage import COMMANDS
 from physicslab.ecs.text import printable, shortened, suggestion
@@ -23,8 +23,8 @@ _PIPE_CLOSED = 141
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line and return the exit status.
 
-    0: done. 1: the run failed. 2: bad usage or a bad scene. 130: interrupted. 141: stdout was closed
-    by its reader. Every error is one line on stderr.
+    0: done. 1: the run failed. 2: bad usage or a bad scene. 128 and more: a signal ended it, 130 that of
+    Ctrl+C; 141: stdout was closed by its reader. Every error is one line on stderr.
 
     Parameters
     ----------
@@ -38,14 +38,15 @@ def main(argv: Sequence[str] | None = None) -> int:
                 errors="backslashreplace"
             )  # a terminal may not be able to show every letter of a title
     try:
-        status = _dispatch(list(sys.argv[1:] if argv is None else argv))
+        try:
+            status = _dispatch(list(sys.argv[1:] if argv is None else argv))
+        except SystemExit as done:  # argparse, after --help
+            status = done.code if isinstance(done.code, int) else 0
         if sys.stdout is not None:
             sys.stdout.flush()
         return status
-    except SystemExit as done:  # argparse, after --help
-        return done.code if isinstance(done.code, int) else 0
-    except KeyboardInterrupt:  # before refusals: a package whose import it ended cannot be imported again
-        return _complain("interrupted", INTERRUPTED)
+    except KeyboardInterrupt as error:  # before refusals: a package whose import it ended cannot be imported
+        return _complain(*told(error))
     except CommandError as error:
         return _complain(str(error), error.status)
     except _refusals() as error:

@@ -237,3 +237,12 @@ def test_fields_that_the_data_leave_open_have_an_infinite_error() -> None:
     measured = {"time": [0.1, 0.2, 0.3], "ball.y": [3.951, 3.804, 3.559]}
     alone = fit("drop", {"ball.Mass.mass": 1.0, "physics.gravity.y": -9.0}, measured)
     assert alone.errors["ball.Mass.mass"] == np.inf and 0.0 < alone.errors["physics.gravity.y"] < 0.1
+
+
+@pytest.mark.peers
+def test_without_a_number_to_spare_the_data_do_not_say_how_sure_a_field_is() -> None:
+    """One number and one field, which goes through it, had an error of 1e-15."""
+    alone = fit("drop", {G: -9.0}, {"time": [0.5], "ball.y": [2.8]})
+    assert alone.values[G] == pytest.approx(-9.6) and alone.errors[G] == np.inf
+    with pytest.raises(SceneError, match=r"start \[.*\]: must be a dict of fields"):
+        fit("drop", [G], {"time": [0.5], "ball.y": [2.8]})  # type: ignore[arg-type]

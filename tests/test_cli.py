@@ -33,6 +33,7 @@ from physicslab.lab.stability.catalogue import CASES
 from physicslab.scenes import SCENES
 
 ROOT = Path(__file__).parent.parent
+NO_HANGUP = pytest.mark.skipif(not hasattr(signal, "SIGHUP"), reason="there is no such signal here")
 
 
 def document(capsys: pytest.CaptureFixture[str], *arguments: str) -> dict[str, Any]:
@@ -248,6 +249,8 @@ USAGE = [
         "--json none/x.json: cannot be written: there is no directory",
     ),
     (["run", "drop", "--csv", "/"], "--csv /: cannot be written: / is a directory"),
+    (["run", "drop", "--csv", "x/"], "--csv x/: cannot be written: x/ is the name of a directory"),
+    (["lesson", "--language", ""], "argument --language: '': must be the code of a language, as de"),
     (["run", "drop", "--png", "a\0b"], "--png a\\x00b: cannot be written"),
     *((["run", "drop", "--png", name], f"--png {name}: must end in .png") for name in ("x.jpg", "x.PDF")),
     (["run", "drp"], 'drp: no such file, and no built-in scene; did you mean "drop"?'),
@@ -411,7 +414,9 @@ def test_an_interrupted_run_ends_quietly(
 
     monkeypatch.setattr(MeasuredRun, "_measure", interrupt)
     path = tmp_path / "run.json"
-    assert complaint(capsys, "run", "drop", "--json", str(path), status=130) == "interrupted"
+    assert complaint(capsys, "run", "drop", "--json", str(path), status=130) == (
+        "interrupted; drop: at t = 0.0166666667 s, after 1 of 600 steps"
+    )
     assert os.listdir(tmp_path) == []
 
 
@@ -428,12 +433,16 @@ def test_an_interrupted_import_is_not_tried_again(
     assert complaint(capsys, "scenes", status=130) == "interrupted"
 
 
+@pytest.mark.parametrize(("name", "said"), [("SIGINT", "interrupted"), ("SIGTERM", "ended by SIGTERM")])
 def test_an_interrupt_that_comes_in_a_callback_is_not_forgotten(
-    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    name: str, said: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    number = getattr(signal, name)
+    before = signal.getsignal(number)
+
     class Dropped:
         def __del__(self) -> None:
-            signal.raise_signal(signal.SIGINT)
+            signal.raise_signal(number)
 
     def go_on(*_: object) -> None:
         Dropped()
@@ -442,7 +451,30 @@ def test_an_interrupt_that_comes_in_a_callback_is_not_forgotten(
 
     monkeypatch.setattr(MeasuredRun, "_measure", go_on)
     monkeypatch.setattr(sys, "argv", ["physicslab", "run", "drop"])
-    assert run() == 130 and capsys.readouterr().err == "physicslab: interrupted\n"
+    where = "drop: at t = 0.0166666667 s, after 1 of 600 steps"
+    assert run() == 128 + number and capsys.readouterr().err == f"physicslab: {said}; {where}\n"
+    assert signal.getsignal(number) == before
+
+
+@pytest.mark.parametrize("name", ["SIGTERM", pytest.param("SIGHUP", marks=NO_HANGUP)])
+def test_rows_until_a_signal_are_kept(
+    name: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """The file that was being written stayed behind under a name of its own."""
+    advance, number = MeasuredRun._advance, getattr(signal, name)
+
+    def signalled(run: MeasuredRun, *arguments: Any) -> bool:
+        if run.record.steps == 3:
+            signal.raise_signal(number)
+        return advance(run, *arguments)
+
+    monkeypatch.setattr(MeasuredRun, "_advance", signalled)
+    monkeypatch.setattr(sys, "argv", ["physicslab", "run", "drop", "--csv", str(tmp_path / "a.csv")])
+    assert run() == 128 + number
+    where = "drop: at t = 0.05 s, after 3 of 600 steps"
+    assert capsys.readouterr().err == f"physicslab: ended by {name}; {where}\n"
+    assert os.listdir(tmp_path) == ["a.csv"]
+    assert (tmp_path / "a.csv").read_text().count("\n") == 1 + 2 * 4, "floor and ball, at each of four times"
 
 
 def test_a_full_disk_is_said(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
@@ -564,6 +596,7 @@ def test_a_reader_that_leaves_is_no_traceback() -> None:
     ("arguments", "line"),
     [
         (["scenes"], "No space left on device"),
+        (["--help"], "No space left on device"),
         (["run", "drop", "--csv", "-"], "--csv -: cannot be written: No space left on device"),
     ],
 )

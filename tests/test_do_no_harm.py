@@ -36,6 +36,12 @@ def test_escape_quits_at_the_second_press_once_something_was_closed(desk: Desk) 
     assert desk.window.closing
 
 
+def test_ctrl_q_quits_whatever_is_open(desk: Desk) -> None:
+    tap(desk, "l")
+    tap(desk, "q", CTRL)
+    assert desk.window.closing
+
+
 def test_leaving_says_what_would_be_lost(desk: Desk) -> None:
     tap(desk, "r")
     desk.window.scenes.next_world = empty_world()

@@ -393,6 +393,9 @@ def test_a_gear_couples_two_pinned_wheels_by_their_radii(desk: Desk) -> None:
     gear = made(desk, Gear)
     assert (gear.first, gear.second) == tuple(desk.world.batch(Pin).entities.tolist())
     assert gear.ratio == pytest.approx(-2.0)
+    desk.world.remove(desk.world.batch(Gear).entities.tolist()[0])
+    clicks(desk, "belt", (0.3, 0.1), (1.3, 0.1))
+    assert made(desk, Gear).ratio == pytest.approx(2.0), "they turn the same way"
     circle(desk.world, (-3.0, 0.0))
     clicks(desk, "gear", (0.3, 0.1), (-3.0, 0.0))
     assert "pin them first" in desk.window.notice

@@ -4,6 +4,7 @@ import csv
 import itertools
 import os
 import re
+import shutil
 import sys
 from collections.abc import Mapping
 from dataclasses import replace
@@ -282,8 +283,10 @@ def test_rows_that_were_made_before_a_crash_are_not_made_again(
         if share > 0.5:
             raise KeyboardInterrupt
 
-    with pytest.raises(KeyboardInterrupt):
+    with pytest.raises(KeyboardInterrupt) as interrupted:
         ensemble("drop", DRAWN, out=out, progress=crash, **arguments)
+    (note,) = interrupted.value.__notes__
+    assert re.fullmatch(r"after \d+ of 70 runs; the same call goes on there", note)
     parts = sorted((tmp_path / f"sweep.{ending}.parts").iterdir())
     assert not out.exists() and len(parts) >= 1
     shares: list[float] = []
@@ -320,6 +323,29 @@ def test_a_finished_file_is_read_in_place_of_another_run(
     out.write_bytes(out.read_bytes() + b"\n")
     edited = ensemble("drop", space, measure={"y": "ball.x", "when": "first_impact.time"}, **arguments)
     assert edited.found == 0, "the file is not as it was written"
+
+
+def test_two_sweeps_to_one_file_do_not_lose_rows(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The one that ended first removed the parts of both: the other wrote a file of NaN, and said nothing."""
+    monkeypatch.setattr(sink, "PART", 2)
+    arguments: dict[str, Any] = dict(steps=1, executor="serial", out=tmp_path / "a.npz")
+    space = {M: [1.0, 2.0, 3.0]}
+    others: list[str] = []
+
+    def other(share: float) -> None:
+        with pytest.raises(OSError, match=r"a\.npz: another sweep to this file is under way$") as refused:
+            ensemble("drop", space, measure="ball.x", **arguments)
+        others.append(str(refused.value))
+
+    made = ensemble("drop", space, measure="ball.y", progress=other, **arguments)
+    assert others and np.isfinite(made.columns["ball.y"]).all()
+    assert {path.name for path in tmp_path.iterdir()} == {"a.npz", "a.npz.key"}
+
+    def lose(share: float) -> None:
+        shutil.rmtree(tmp_path / "a.npz.parts")
+
+    with pytest.raises(OSError, match=r"2 rows that were kept in .* are gone; the same sweep once"):
+        ensemble("drop", space, measure="ball.x", progress=lose, **arguments)
 
 
 def test_strange_files_in_the_folder_of_parts_are_kept(tmp_path: Path) -> None:

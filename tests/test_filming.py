@@ -116,6 +116,7 @@ def test_a_film_of_the_time_line_that_is_broken_off_leaves_no_file(
     assert list(tmp_path.iterdir())
     if ending == "f9":
         tap(desk, "f9")
+        assert desk.sandbox.history.step_count == 60, "as before the film"
     elif ending == "moved":
         desk.sandbox.history.seek(40)
     elif ending == "full":

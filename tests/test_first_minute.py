@@ -231,6 +231,15 @@ def test_a_scene_is_found_by_other_words_for_what_it_shows(text: str, code: str)
     assert "A ball on a floor" in [one.words for one in found]
 
 
+@pytest.mark.parametrize("text", ["collision push", "who pushes", "stößt stärker", "collision"])
+def test_a_lesson_is_found_by_its_title_in_both_languages(text: str) -> None:
+    """In a German window lessons had no English titles."""
+    desk = sized(SIZE)
+    desk.window.language = "de"
+    found = commands.find(text, list(commands.commands(desk.window)), language("de"))
+    assert "Wer stößt bei einem Zusammenstoß stärker?" in [one.words for one in found]
+
+
 def test_a_sharp_s_is_found_by_two() -> None:
     sharp = [commands.Command("Schließen", "", "", lambda world, window: None)]
     assert all(commands.find(text, sharp, language("de")) == sharp for text in ("schliess", "schließ"))

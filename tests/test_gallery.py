@@ -11,7 +11,7 @@ from desk import SETTLED, Desk, click, empty_world, sized, tap, write
 from imgui_bundle import imgui
 
 from physicslab.files.scene import load_scene, save_scene
-from physicslab.lessons.catalogue import LESSONS, titles
+from physicslab.lessons.catalogue import LESSONS, openings, titles
 from physicslab.scenes import SCENES
 from physicslab.theme import DARK
 from physicslab.view.workbench import thumbnails
@@ -46,6 +46,13 @@ def test_ones_own_scenes_come_first_and_what_cannot_be_read_says_why(desk: Desk)
     assert set(cards(desk)[:2]) == {"My clock", "half.json"}
     assert cards(desk)[2:] == [scene.title for scene in SCENES.values()] + list(titles().values())
     assert any(words.startswith("Is not JSON") for words in desk.ui.words)
+
+
+def test_each_lesson_says_what_it_is_about(desk: Desk) -> None:
+    click(desk, "Tag: lesson")
+    said = [one.text for one in openings().values()]
+    assert len({*said}) == len(LESSONS)
+    assert any(words.startswith("A ball is thrown at 12 m/s. You choose") for words in desk.ui.words)
 
 
 def test_words_find_scenes_and_enter_opens_the_first(desk: Desk) -> None:

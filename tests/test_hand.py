@@ -6,8 +6,9 @@ from dataclasses import replace
 import pytest
 from desk import FRAME, empty_world
 
-from physicslab.components import Drag, Held, Mass, Thrust, Transform, Velocity
+from physicslab.components import Drag, Held, Mass, Pin, Rod, Rope, Thrust, Transform, Velocity
 from physicslab.diagnostics.energy import measure_account
+from physicslab.diagnostics.joint_warnings import joint_warnings
 from physicslab.ecs.config import SimulationConfig, WindowConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.prefabs import box, circle
@@ -233,3 +234,47 @@ def test_what_acts_on_a_body_in_the_hand_alone_is_no_work_of_the_hand(contacts: 
     account = measure_account(world).energy
     for cause in ("hand", "thrust", "damping", "numerical"):
         assert abs(account[cause]) < 1e-12, cause
+
+
+@pytest.mark.parametrize("joint", ["pin", "rod", "rope"])
+def test_in_a_pause_a_body_goes_where_its_joints_let_it(joint: str) -> None:
+    world = empty_world()
+    bob = box(world, (0.0, -2.0), width=0.4, height=0.4)
+    made = {"pin": Pin(b=bob, anchor_b=(0.0, 2.0)), "rod": Rod(b=bob), "rope": Rope(b=bob)}
+    world.spawn(made[joint])
+    hand = Hand(WindowConfig())
+    hand.take(world, bob, Vector2(0.0, -2.0), 0.0, paused=True)
+    for _ in range(20):
+        hand.move(Vector2(3.0, 0.0), 0.1)
+        hand.lead(world, 0.0, paused=True)
+    hand.release(world, Vector2(3.0, 0.0), 0.2, paused=True)
+    place = world.component(bob, Transform)
+    assert place.position.magnitude == pytest.approx(2.0, abs=1e-6)
+    assert tuple(place.position) == pytest.approx((2.0, 0.0), abs=0.02)
+    assert place.angle == pytest.approx(math.pi / 2 if joint == "pin" else 0.0, abs=0.02)
+    assert not list(joint_warnings(world))
+
+
+def test_in_a_pause_a_wheel_on_a_pin_turns_with_the_hand() -> None:
+    world = empty_world()
+    wheel = circle(world, (0.0, 0.0), radius=1.0)
+    world.spawn(Pin(b=wheel))
+    hand = Hand(WindowConfig())
+    hand.take(world, wheel, Vector2(0.8, 0.0), 0.0, paused=True)
+    for _ in range(60):
+        hand.move(Vector2(0.0, 3.0), 0.1)
+        hand.lead(world, 0.0, paused=True)
+    place = world.component(wheel, Transform)
+    assert place.position.magnitude < 1e-6 and place.angle == pytest.approx(math.pi / 2, abs=0.02)
+
+
+def test_in_a_pause_what_hangs_on_a_body_comes_along() -> None:
+    world = empty_world()
+    upper, lower = (circle(world, (0.0, y), radius=0.1) for y in (0.0, -1.0))
+    world.spawn(Rod(a=upper, b=lower))
+    hand = Hand(WindowConfig())
+    hand.take(world, upper, Vector2(), 0.0, paused=True)
+    hand.move(Vector2(0.0, 2.0), 0.1)
+    hand.lead(world, 0.0, paused=True)
+    assert tuple(world.component(upper, Transform).position) == (0.0, 2.0)
+    assert tuple(world.component(lower, Transform).position) == pytest.approx((0.0, 1.0))

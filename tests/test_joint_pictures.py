@@ -176,12 +176,39 @@ def test_joints_are_caught_by_screws_wheels_sliders_and_lines() -> None:
 
     def at(x: float, y: float, *, lines: bool = False) -> type | None:
         entity = joint_at(world, CAMERA, CAMERA.to_screen(Vector2(x, y)), lines=lines)
-        kinds = (Rod, Rope, Slot, Weld, Pin, Pulley)
+        kinds = (Rod, Rope, Slot, Weld, Pin, Pulley, Gear)
         return next((kind for kind in kinds if entity is not None and world.has(entity, kind)), None)
 
     assert at(-5, 1, lines=True) is Rod and at(-5, 1) is None
     assert at(-4, 1.5, lines=True) is Rope
     assert (at(-3, 0), at(-1.5, 0), at(0, 0), at(1.5, 2)) == (Slot, Weld, Pin, Pulley)
+    assert at(0.5, 0.0, lines=True) is Gear and at(0.3, 0.4, lines=True) is Gear, (
+        "where the wheels meet, a rim"
+    )
     assert at(5, 5) is None and at(5, 5, lines=True) is None
     (rod,) = world.batch(Rod).entities.tolist()
     assert joint_lines(world, CAMERA, rod).tolist() == [[[140.0, 160.0], [140.0, 360.0]]]
+
+
+@pytest.mark.parametrize("ratio", [-2.0, 2.0], ids=["gear", "belt"])
+def test_rims_meet_against_each_other_and_a_belt_goes_around_wheels_that_turn_alike(ratio: float) -> None:
+    world = empty_world()
+    wheels = [circle(world, (x, 0.0), radius=radius) for x, radius in ((0.0, 0.8), (2.0, 0.4))]
+    pins = [world.spawn(Pin(b=wheel, anchor_a=(x, 0.0))) for wheel, x in zip(wheels, (0.0, 2.0), strict=True)]
+    gear = world.spawn(Gear(pins[0], pins[1], ratio=ratio))
+    world.synchronise()
+    place = np.array(
+        [tuple(CAMERA.to_world(tuple(corner))) for corner in joint_lines(world, CAMERA, gear)[:, 0]]
+    )
+    from_first, from_second = np.hypot(*place.T), np.hypot(*(place - (2.0, 0.0)).T)
+    if ratio > 0.0:
+        assert (
+            np.isclose(from_first, 0.8, atol=1e-6).sum()
+            == np.isclose(from_second, 0.4, atol=1e-6).sum()
+            == 33
+        )
+        assert place[:, 0].min() == pytest.approx(-0.8) and place[:, 0].max() == pytest.approx(2.4)
+    else:
+        assert (
+            np.isclose(from_first, 4.0 / 3.0).sum() >= 64 and np.isclose(from_second, 2.0 / 3.0).sum() >= 64
+        )

@@ -1,5 +1,6 @@
 """What is told of joints: those in line, those that contradict each other, those that do nothing."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -7,7 +8,7 @@ import numpy as np
 import pytest
 
 from physicslab import World, load_scene, save_scene
-from physicslab.components import Mass, Pin, Rod, Shape, Slot, Transform, Velocity, Weld
+from physicslab.components import Mass, Pin, Rod, Shape, Slot, Spring, Transform, Velocity, Weld
 from physicslab.diagnostics.energy import measure_account, measure_energy
 from physicslab.diagnostics.joints import joint_states
 from physicslab.diagnostics.warnings import find_warnings
@@ -106,6 +107,18 @@ def test_a_rod_without_length_is_told_to_have_no_direction() -> None:
     world = world_with((Rod, {"a": 1, "anchor_b": (0.0, 1.0), "length": 1e-300}))
     world.step()
     assert any(one.startswith("joint 1: has both ends in one place") for one in told(world))
+
+
+def test_a_rod_or_a_spring_between_two_bodies_in_one_place_is_told_to_have_no_direction() -> None:
+    """A rod alone was said to contradict other joints, and a spring nothing."""
+    words = "joint 1: has both ends in one place, where a distance has no direction; places apart would help"
+    for kind, name in ((Rod, "length"), (Spring, "rest_length")):
+        fields = {"a": 1, "b": 2, name: 1.0}
+        world = world_with((kind, fields), other=(Transform(), Velocity(), Mass(1.0)))
+        world.step()
+        assert told(world) == [words]
+    world.component("joint 1", Spring).rest_length = 0.0
+    assert not told(world)
 
 
 def test_a_straight_chain_at_the_origin_is_not_far_away() -> None:
@@ -306,3 +319,21 @@ def test_what_soft_joints_take_of_bodies_that_bounce_is_told(contacts: str) -> N
     assert bool(warned) == (contacts == "soft")
     if warned:
         assert warned[0].setting == 'simulation.contacts = "rigid"'
+
+
+def test_what_is_light_before_a_heavy_load_is_no_contradiction_and_the_substeps_that_are_named_hold() -> None:
+    """The rods were apart by metres and said to contradict each other, and no setting to help."""
+    world = World(simulation=SimulationConfig(contacts="soft"))
+    box(world, (0.0, -9.0), width=9.0, height=1.0, static=True)
+    for x, mass, above in ((1.0, 1.0, None), (2.0, 1e6, 1)):
+        circle(world, (x, 0.0), radius=0.1, mass=mass, name=f"ball {x:g}")
+        world.spawn(Rod(a=above and "ball 1", b=f"ball {x:g}"))
+    world.mark()
+    world.run(seconds=1.0)
+    (advice,) = [one for one in find_warnings(world) if "does not hold what it joins" in one.what]
+    assert not [one for one in find_warnings(world) if "contradicts" in one.what]
+    assert (advice.value or 0.0) > 1.0 and advice.setting == "simulation.substeps = 74"
+    world.reset()
+    world.simulation = replace(world.simulation, substeps=74)
+    world.run(seconds=1.0)
+    assert not [*find_warnings(world)] and max(joint_figures.figures_of(world).stretch) < 1e-4

@@ -134,7 +134,7 @@ def test_the_hand_presses_nothing_through_a_floor_and_takes_nothing_beyond_the_w
 def test_nothing_is_made_where_it_would_overlap_or_beyond_the_walls() -> None:
     desk = Desk(empty_world(gravity=(0, 0), bounds=(-2.0, -2.0, 2.0, 2.0)))
     box(desk.world, (0, 0), width=1.0, height=1.0, static=True)
-    why = "no room here", "beyond the walls", "beyond the walls"
+    why = "no room here, box 1 is in the way", "beyond the walls", "beyond the walls"
     for (x, y), reason in zip(((0.55, 0.0), (2.5, 0.0), (1.95, 1.0)), why, strict=True):
         desk.press(x, y, "right")
         desk.release(x, y, "right")
@@ -291,7 +291,7 @@ def test_a_scene_that_is_left_alone_is_closed_at_once_and_one_that_was_edited_as
     desk.frames(2)
     desk.key("escape")
     desk.frames(2, FRAME)
-    assert not desk.window.closing and "Esc again" in desk.window.notice
+    assert not desk.window.closing and "Once more" in desk.window.notice
     desk.key("escape")
     desk.frames()
     assert desk.window.closing
@@ -307,7 +307,7 @@ def test_the_gallery_has_a_card_with_a_picture_for_each_scene_and_opens_it() -> 
     titles = [scene.title for scene in SCENES.values()]
     assert all(f"Scene: {title}" in desk.ui.places for title in titles)
     desk.frames(20)
-    shown = desk.ui.pictures
+    (shown,) = desk.ui.pictures.values()
     assert len(shown) >= 6
     for surface, _, _ in shown:
         assert len(np.unique(pygame.surfarray.array2d(surface))) > 3, "something is to be seen in it"

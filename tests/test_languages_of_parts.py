@@ -158,7 +158,8 @@ def test_what_a_method_costs_is_said_in_the_language() -> None:
 
 
 @pytest.mark.parametrize(
-    ("place", "reason"), [((0.0, 0.0), "hier ist kein Platz"), ((0.0, 2.9), "es ragte durch die Wände")]
+    ("place", "reason"),
+    [((0.0, 0.0), "hier ist kein Platz, Kasten 1 ist im Weg"), ((0.0, 2.9), "es ragte durch die Wände")],
 )
 def test_why_nothing_is_made_is_said_in_the_language_and_as_a_refusal(
     place: tuple[float, float], reason: str

@@ -18,7 +18,7 @@ from physicslab.components import Mass, Transform
 from physicslab.files.scene import load_scene
 from physicslab.lessons.answers import grade, read_answers
 from physicslab.lessons.catalogue import find_lesson
-from physicslab.lessons.lesson import Lesson
+from physicslab.lessons.lesson import Lesson, Run
 from physicslab.prefabs import circle
 from physicslab.view.controls.controls import CONTROLS
 from physicslab.view.controls.lesson_actions import choose_language, open_lesson
@@ -178,6 +178,15 @@ def test_forces_are_shown_once_all_is_predicted(desk: Desk) -> None:
         assert lesson.answer(name, question, {**answer, "sure": "sure"}) == ""
     after, later, named = drawn()
     assert after > before and named and not later
+
+
+def test_the_first_page_shows_no_forces_before_the_predictions_of_the_next(desk: Desk) -> None:
+    """The net force stood on the ball beside the question which forces act on it."""
+    lesson = opened(desk, "projectile")
+    assert not any(isinstance(part, Run) for part in lesson.lesson.steps[0].parts) and lesson.waits
+    for one in lesson.lesson.predictions(next(p for p in lesson.lesson.parts() if isinstance(p, Run))):
+        lesson.given[one.name] = {"choice": 2, "sure": "sure"}
+    assert not lesson.waits
 
 
 def test_sources_are_named_by_their_authors(desk: Desk, tmp_path: Path) -> None:

@@ -27,7 +27,7 @@ from physicslab.files.scene import load_scene
 from physicslab.kernels.records import IMPACT
 from physicslab.languages.catalogue import languages
 from physicslab.lessons.catalogue import LESSONS, LIBRARY, find_lesson
-from physicslab.lessons.check import LessonRuns, check_lesson, row_of
+from physicslab.lessons.check import LessonRuns, check_lesson, row_of, unit_of
 from physicslab.lessons.lesson import Compare, Lesson, Recall, Run
 from physicslab.lessons.reader import read_lesson
 from physicslab.lessons.setup import Case, Parameters
@@ -427,3 +427,13 @@ def test_a_worksheet_has_the_questions_and_no_solutions(tmp_path: Path) -> None:
     own = tmp_path / "own.md"
     own.write_text((LIBRARY / "pendulum.md").read_text())
     assert main(["lesson", str(own), "--worksheet", str(own)]) == 2
+
+
+def test_a_graph_of_an_angle_is_in_radians() -> None:
+    """The axis of a block's angle had no unit."""
+    lesson = find_lesson("incline")
+    (run,) = (one for one in lesson.parts() if isinstance(one, Run) and one.name == "tall")
+    ((along, across),) = run.graphs
+    figures = LessonRuns(lesson).figures(run)
+    assert unit_of(along, along.value(figures.at(0))) == "rad"
+    assert unit_of(across, across.value(figures.at(0))) == "s"

@@ -42,6 +42,27 @@ def picture(toolkit: Toolkit) -> NDArray[np.uint8]:
     return pygame.surfarray.array3d(surface)
 
 
+def test_a_picture_of_a_panel_lies_below_the_panels_before_it() -> None:
+    """Pictures of the gallery lay over an open menu."""
+    toolkit, red = Toolkit(), (255, 0, 0)
+    ui, overlay = Ui(toolkit.fonts, DARK), pygame.Surface((200, 120))
+    overlay.fill(red)
+
+    def build() -> None:
+        ui.begin(DARK)
+        with ui.panel("before", (100, 0, 200, 120)):
+            ui.text("menu")
+        with ui.panel("behind", (0, 0, 200, 120)):
+            ui.text("cards")
+            ui.picture(overlay, (0, 0), pygame.Rect(0, 0, 200, 120))
+
+    for _ in range(4):
+        toolkit.frame(SIZE, DARK, 15.0, 1 / 60, build)
+    surface = pygame.Surface(SIZE, 0, 32)
+    toolkit.pictures.show(surface, ui.pictures)
+    assert surface.get_at((50, 60))[:3] == red and surface.get_at((150, 100))[:3] != red
+
+
 def test_words_with_a_power_are_broken_within_the_width_that_is_set() -> None:
     """What came after the power stood in a column of single letters."""
     toolkit, sizes = Toolkit(), {}

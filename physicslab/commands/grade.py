@@ -18,7 +18,7 @@ from physicslab.lessons.words import kind_words, sureness_words
 def execute(arguments: Namespace) -> int:
     """Print the report."""
     output = JsonOutput(arguments.json, arguments.answers, "the answers")
-    lesson = lesson_in(arguments.lesson, arguments.language)
+    lesson = lesson_in(arguments.lesson, arguments.language or "")
     find = partial(find_lesson, language=lesson.language)
     answers = read_answers(arguments.answers, lesson, find)
     with Tiers(True):

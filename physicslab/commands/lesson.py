@@ -32,7 +32,7 @@ def execute(arguments: Namespace) -> int:
         others = "--check and --json" if not both else "--worksheet, --check and --json"
         raise CommandError(f"{option}: must stand beside one lesson, and without {others}")
     names = LESSONS if arguments.lesson is None else (arguments.lesson,)
-    lessons = [lesson_in(name, arguments.language) for name in names]
+    lessons = [lesson_in(name, arguments.language or "") for name in names]
     if sheet is not None:
         if arguments.lesson not in LESSONS:
             sheet.refuse_same(arguments.lesson, "the lesson")

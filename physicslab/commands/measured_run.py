@@ -4,9 +4,10 @@ import math
 import sys
 import time
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 
 from physicslab.commands import tell
-from physicslab.commands.opening import stopped_at
+from physicslab.commands.opening import place_of, stopped_at
 from physicslab.commands.progress import Progress
 from physicslab.diagnostics.energy import Accounts, Audit
 from physicslab.diagnostics.impact_table import ImpactTableWriter
@@ -107,7 +108,7 @@ class MeasuredRun:
         patience = math.inf if self._at_most is None else _PATIENCE_S
         stepping = world.stepping(seconds=seconds, steps=steps, stride=stride, patience=patience)
         self._measure_every, self._look_every = (max(1, whole // (stride * n)) for n in (_SAMPLES, _LOOKS))
-        with Progress(self._label, sys.stderr, always=self._always) as progress:
+        with Progress(self._label, sys.stderr, always=self._always) as progress, self._placed(whole):
             self._keep()
             while not self.stopped and self._advance(stepping, progress):
                 if self._is_due(dt):
@@ -123,6 +124,15 @@ class MeasuredRun:
                 self._keep()
             record.warnings.add(find_warnings(world))
         record.warnings.add(self._watch.warnings)
+
+    @contextmanager
+    def _placed(self, whole: int) -> Iterator[None]:
+        """Have an interruption within a ``with`` block say how far the run has come."""
+        try:
+            yield
+        except KeyboardInterrupt as error:
+            error.add_note(f"{self._label}: {place_of(self._world.time, self.record.steps, whole)}")
+            raise
 
     def _stride(self, whole: int) -> int:
         """Return how many of so many steps are made between two measurements."""

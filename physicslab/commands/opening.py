@@ -47,7 +47,11 @@ def check_seconds(seconds: float, dt: float) -> None:
         raise CommandError(f"--seconds {seconds:g}: must be at most {STEP_LIMIT:g} steps of dt")
 
 
+def place_of(time: float, done: int, whole: int) -> str:
+    """Return in words how far a run has come."""
+    return f"at t = {time:.9g} s, after {done} of {whole} steps"
+
+
 def stopped_at(budget: float, time: float, done: int, whole: int) -> str:
     """Return in words where a command was stopped by it."""
-    place = f"at t = {time:.9g} s, after {done} of {whole} steps"
-    return f"stopped after {budget:g} s of wall clock (--at-most) {place}"
+    return f"stopped after {budget:g} s of wall clock (--at-most) {place_of(time, done, whole)}"

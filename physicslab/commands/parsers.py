@@ -36,6 +36,11 @@ class Parser(ArgumentParser):
             return value
         return super()._get_values(action, arg_strings)
 
+    def _print_message(self, message: str, file: Any = None) -> None:
+        """Write help, and let it be known where it cannot be written."""
+        if file is not None:
+            file.write(message)
+
     def refuse(self, arguments: Sequence[str]) -> NoReturn:
         """Refuse arguments that the command does not have, with the option that a misspelt one may mean."""
         names = (one.partition("=")[0] for one in arguments if one.startswith("-"))
@@ -123,6 +128,7 @@ def manual(version: str) -> str:
         lines += [line for text in about for line in (".PP", _roff(" ".join(text.split())))]
         lines += [*_options(parser), *([".PP", _roff(parser.epilog)] if parser.epilog else [])]
     lines += [".SH EXIT STATUS", "0: done. 1: the run failed. 2: bad usage or a bad scene."]
+    lines += ["128 and more: a signal ended it, whose number is the rest."]
     return "\n".join(lines) + "\n"
 
 

@@ -58,6 +58,8 @@ def execute(arguments: Namespace) -> int:
     if picture is not None:
         picture.write(result.map())
     _tell(result, label, output)
+    if len(result.failures) == len(result):
+        raise CommandError(f"{label}: no run is without a failure", FAILED)
     return 0
 
 

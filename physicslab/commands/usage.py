@@ -37,6 +37,12 @@ def add_budget(parser: ArgumentParser) -> None:
     parser.add_argument("--at-most", metavar="SECONDS", type=positive_duration, help=budget)
 
 
+def add_language(parser: ArgumentParser) -> None:
+    """Declare in which language a lesson is."""
+    words = "of a lesson that has it, as de"
+    parser.add_argument("--language", metavar="CODE", type=language_code, help=words)
+
+
 def add_lab_arguments(parser: ArgumentParser, kind: str, what: str, plot: str = "") -> None:
     """Declare the arguments of every lab: names, of what ``kind`` and ``what`` they may be, and outputs.
 
@@ -94,6 +100,13 @@ def _whole(text: str, least: int) -> int:
     if not least <= number <= STEP_LIMIT:
         raise ArgumentTypeError(f"{text!r}: must be a whole number >= {least}, at most {STEP_LIMIT:g}")
     return number
+
+
+def language_code(text: str) -> str:
+    """Return the code of a language, which is not empty."""
+    if not text:
+        raise ArgumentTypeError("'': must be the code of a language, as de")
+    return text
 
 
 def rate(text: str) -> float:
@@ -227,7 +240,7 @@ def lesson(parser: ArgumentParser) -> None:
         "lesson", metavar="NAME|FILE", nargs="?", help="a lesson; without one, all that come with the program"
     )
     parser.add_argument("--check", action="store_true", help="compare every theory with the engine: a table")
-    parser.add_argument("--language", metavar="CODE", default="", help="of a lesson that has it, as de")
+    add_language(parser)
     parser.add_argument("--worksheet", metavar="FILE", help="write a page to print, without solutions")
     words = "write one page for a browser without a network: with its runs, and with its solutions in it"
     parser.add_argument("--page", metavar="FILE", help=words)
@@ -240,7 +253,7 @@ def grade(parser: ArgumentParser) -> None:
     """Grade the answers of a learner to a lesson: a report that a teacher can read."""
     parser.add_argument("lesson", metavar="LESSON", help="a lesson's name, or its file")
     parser.add_argument("answers", metavar="ANSWERS.json", help="answers as physicslab-answers/1")
-    parser.add_argument("--language", metavar="CODE", default="", help="of a lesson that has it, as de")
+    add_language(parser)
     parser.add_argument("--json", metavar="FILE", help="write the report as JSON (- for stdout)")
 
 

@@ -1,5 +1,6 @@
 """Warnings of joints: those that contradict each other, those that hold what is held, and what they leave."""
 
+import math
 from collections.abc import Iterator
 
 import numpy as np
@@ -8,7 +9,7 @@ from numpy.typing import NDArray
 from physicslab.components import Held, Material, Rod
 from physicslab.diagnostics.contact_warnings import contact_graph, rigid_setting
 from physicslab.diagnostics.energy import measure_account, measure_kinetic
-from physicslab.diagnostics.step_warnings import ModelWarning
+from physicslab.diagnostics.step_warnings import SUBSTEPS_LIMIT, ModelWarning
 from physicslab.ecs.sentences import sentence
 from physicslab.kernels.joints.blocks import ACTIVE, GIVES, ROW, STATE
 from physicslab.kernels.joints.measured import AX, BX, BY, TURN_A
@@ -18,6 +19,7 @@ from physicslab.state.joint_figures import (
     measured_terms,
 )
 from physicslab.state.joint_rows import Measure, Role
+from physicslab.state.joints import Joint
 from physicslab.stepping.plan import WITHOUT_END
 from physicslab.stepping.soft import Soft
 from physicslab.world import World
@@ -54,11 +56,14 @@ def joint_warnings(world: World) -> Iterator[ModelWarning]:
     figures, dependent = figures_of(world), _dependent(world) & _acts(world)
     worst = int(np.argmax(np.where(moves, figures.stretch / figures.size, -1.0)))
     stretch, limit = float(figures.stretch[worst]), STRETCH_LIMIT * float(figures.size[worst])
-    if stretch > limit:
-        # Other steppers than the soft one close what can be closed, to rounding.
-        told = bool(dependent.any()) or not isinstance(world.stepper, Soft) or _contradict(world, limit)
+    if stretch > limit and _has_no_direction(world, joints[worst]):
+        what, where = sentence("ends_in_one_place"), sentence("apart")
+        yield ModelWarning.about(world, joints[worst].entity, what, setting=where)
+        return
+    told = stretch > limit and (bool(dependent.any()) or _contradict(world, limit))
+    if stretch > limit and (told or isinstance(world.stepper, Soft)):  # others close what can be closed
         what = sentence("contradicts") if told else sentence("does_not_hold")
-        setting = "" if told else f"simulation.substeps = {2 * world.simulation.substeps}"
+        setting = "" if told else f"simulation.substeps = {_substeps(world, float(figures.size[worst]))}"
         if (
             not told
             and joints[worst].own.start in world.joints.blocks.nodes[:-1, ROW][world.joints.blocks.gives_way]
@@ -68,7 +73,7 @@ def joint_warnings(world: World) -> Iterator[ModelWarning]:
     elif dependent.any():
         first = int(np.argmax(dependent))
         joint = joints[int(world.joints.owner[first])]
-        if joint.kind is Rod and not measured_terms(world)[first, AX : BY + 1].any():
+        if _has_no_direction(world, joint):
             what = sentence("ends_in_one_place")
             yield ModelWarning.about(world, joint.entity, what, setting=sentence("a_pin"))
             return
@@ -82,6 +87,26 @@ def joint_warnings(world: World) -> Iterator[ModelWarning]:
         yield ModelWarning.about(
             world, joint.entity, what, count, limit=0.0, setting=sentence("one_joint_less")
         )
+
+
+def _has_no_direction(world: World, joint: Joint) -> bool:
+    """Whether a joint is a rod whose ends are in one place."""
+    return joint.kind is Rod and not measured_terms(world)[joint.first, AX : BY + 1].any()
+
+
+def _substeps(world: World, size: float) -> int:
+    """Return how many substeps would let soft joints hold, and at least twice as many as there are.
+
+    A light body that carries M/m times its weight on links of a ``size`` [m] swings sideways at the rate
+    sqrt(2 M g / m L), as a loaded string does; a substep has to follow it.
+    """
+    joints, mass = world.joints, world.bodies.inverse_mass
+    ends = np.stack((mass[joints.a], mass[joints.b]))
+    ends = ends[:, (ends > 0.0).all(axis=0)]
+    ratio = float((ends.max(axis=0) / ends.min(axis=0)).max(initial=1.0))
+    rate = math.sqrt(2.0 * ratio * math.hypot(*world.physics.gravity) / size)
+    needed = min(rate * world.simulation.dt, SUBSTEPS_LIMIT)
+    return min(max(math.ceil(needed), 2 * world.simulation.substeps), SUBSTEPS_LIMIT)
 
 
 def _moves(world: World) -> NDArray[np.bool_]:

@@ -46,7 +46,8 @@ class FieldFit:
     Attributes
     ----------
     values, errors : dicts of str to float
-        Each field and its standard error [SI].
+        Each field and its standard error [SI]; infinite where the data leave it open, as with no more
+        numbers than fields.
     covariance : float64 array (fields, fields)
         That of the values, in the order of ``values``; it takes what the fit leaves for noise that is
         independent from sample to sample and alike in all columns.
@@ -125,6 +126,8 @@ def fit(
     covariance = covariance_of(found.jac, found.fun) * np.outer(model.scale, model.scale)
     unfixed = _unfixed(found.jac)
     covariance[unfixed, unfixed] = math.inf
+    if len(found.fun) == len(found.x):  # nothing is left that could tell the noise
+        covariance[:] = math.inf
     values = found.x * model.scale
     return FieldFit(
         dict(zip(model.places, values.tolist(), strict=True)),
@@ -152,8 +155,10 @@ class _Model:
         seconds: float | None,
     ) -> None:
         self._scene, names = write_scene(world), entity_names(world)
-        if not start:
-            raise SceneError("start: must name at least one field")
+        if not isinstance(start, Mapping) or not start:
+            raise SceneError(
+                f"start {shown(start)}: must be a dict of fields, at least one, and their values"
+            )
         self.places = {path: find_place(world, "start", path, str(start[path]), names) for path in start}
         self.start = np.array([_number(self.places[path], start[path]) for path in start])
         self.scale = np.array([abs(value) or 1.0 for value in self.start.tolist()])

@@ -185,19 +185,24 @@ def run_task(
         _check_out(out)
     sink = Sink(task, out)
     done, rows = 0, len(task.space)
-    try:
-        with workers:
-            for block in workers.blocks(task, sink.missing()):
-                sink.put(block)
-                done += len(block.values)
-                if progress is not None:
-                    progress((done + sink.found) / rows)
-    finally:
-        sink.flush()
-    if progress is not None and not done:
-        progress(1.0)
-    columns, failures = _joined(task, sink)
-    sink.write(columns, failures)
+    with sink.alone():
+        try:
+            with workers:
+                for block in workers.blocks(task, sink.missing()):
+                    sink.put(block)
+                    done += len(block.values)
+                    if progress is not None:
+                        progress((done + sink.found) / rows)
+        except KeyboardInterrupt as error:
+            kept = "" if out is None else "; the same call goes on there"
+            error.add_note(f"after {done + sink.found:,} of {rows:,} runs{kept}")
+            raise
+        finally:
+            sink.flush()
+        if progress is not None and not done:
+            progress(1.0)
+        columns, failures = _joined(task, sink)
+        sink.write(columns, failures)
     return EnsembleResult(Columns(columns), failures, task, sink.found)
 
 

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from filelock import FileLock, Timeout
 from numpy.typing import NDArray
 
 from physicslab.ensembles.result import read_result, write_result
@@ -25,7 +26,11 @@ PART = 1000
 """Rows of a part."""
 _PARTS, _KEY = ".parts", ".key"
 """Suffixes beside the file of results: the folder of its parts, and the key by which it is known."""
-_OWN = re.compile(rf"part-\d{{6,}}\.npz|\.part-\d{{6,}}\.npz\.[0-9a-f]{{16}}{re.escape(ENDING)}")
+_LOCK = "sweep.lock"
+"""A file in that folder, locked while a sweep is under way: the system lets go of it however that ends."""
+_OWN = re.compile(
+    rf"{re.escape(_LOCK)}|part-\d{{6,}}\.npz|\.part-\d{{6,}}\.npz\.[0-9a-f]{{16}}{re.escape(ENDING)}"
+)
 """How files of that folder are named, and the remains of a process that was killed while it wrote one."""
 _WRITE_S = 10.0
 """So long [s] results of a part that is not whole yet may be in memory alone."""
@@ -81,6 +86,37 @@ class Sink:
         self.is_whole = self._holds_all()
         self._open: dict[int, Part] = {}
         self.found = 0
+        self._is_written = False
+
+    @contextlib.contextmanager
+    def alone(self) -> Iterator[None]:
+        """Keep other sweeps from the file and its parts within a ``with`` block.
+
+        The parts are removed then, once the file holds all results.
+
+        Raises
+        ------
+        OSError
+            If another one is under way, or nothing can be written there.
+        """
+        if self._folder is None or self.is_whole:
+            yield
+            return
+        with self._named():
+            self._folder.mkdir(exist_ok=True)
+        lock = FileLock(self._folder / _LOCK, blocking=False, thread_local=False)
+        try:
+            lock.acquire()
+        except Timeout:
+            raise OSError(f"out {self._out}: another sweep to this file is under way") from None
+        except (OSError, NotImplementedError):
+            pass  # a file system without locks
+        try:
+            yield
+        finally:
+            lock.release()
+            if self._is_written or not any(self._folder.glob("*.npz")):
+                _remove_parts(self._folder)
 
     @property
     def parts(self) -> int:
@@ -122,15 +158,25 @@ class Sink:
                     self._write(number, part)
 
     def results(self) -> Iterator[Part]:
-        """Yield all parts, in order; as one where the file held them."""
+        """Yield all parts, in order; as one where the file held them.
+
+        Raises
+        ------
+        OSError
+            If rows that were kept are gone.
+        """
         if self.is_whole:
             yield self._read_file()
             return
         for number in range(self.parts):
-            yield self._open[number] if number in self._open else self._read(number)
+            part = self._open[number] if number in self._open else self._read(number)
+            if not part.done.all():
+                lost = f"{int((~part.done).sum())} rows that were kept in {self._folder} are gone"
+                raise OSError(f"out {self._out}: {lost}; the same sweep once more makes them")
+            yield part
 
     def write(self, columns: Mapping[str, Values], failures: Mapping[int, str]) -> None:
-        """Write all results to the file, with the key by which it is known; the parts are removed then.
+        """Write all results to the file, with the key by which it is known.
 
         Raises
         ------
@@ -142,7 +188,7 @@ class Sink:
         with self._named():
             write_result(self._out, columns, failures)
             replace_file(self._key_path(self._out), self._file_key(self._out))
-        _remove_parts(self._folder)
+        self._is_written = True
 
     def _holds_all(self) -> bool:
         """Whether the file holds the results of this task, as they were written."""

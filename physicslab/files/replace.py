@@ -18,8 +18,9 @@ _CAN_BE_HELD = os.name == "nt"
 """Whether a file that another program holds open cannot be replaced: on Windows, while a scanner reads it."""
 _PATIENCE, _PAUSE = 1.0, 0.05
 """How long [s] one is waited for, and between two attempts."""
-_ABANDONED = 3600.0
-"""Age [s] from which on such a file is taken for one that was left behind."""
+_ABANDONED = 7.0 * 24.0 * 3600.0
+"""Age [s] from which on such a file is taken for one that was left behind: a long run may write a row seldom,
+and clocks are set."""
 
 
 def reason_of(error: Exception) -> str:
@@ -50,7 +51,7 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[str | os.PathLike[str]]:
     The bytes go to a new file beside it and to the disk; then that takes the old one's place. Links are
     followed, and what is no ordinary file (a device, a pipe) is written to as it is. A process that is killed
     meanwhile leaves the new file behind, ``.<name>.<16 digits>.physicslab-tmp``; the next that writes a file
-    in the same folder removes it once it is an hour old.
+    in the same folder removes it once it is a week old.
 
     Raises
     ------
@@ -179,6 +180,8 @@ def check_writable(path: str | os.PathLike[str]) -> None:
     """Raise the ``OSError`` that writing this file would, without touching it."""
     if os.path.isdir(path):
         raise IsADirectoryError(f"{path} is a directory")
+    if os.path.basename(path) == "":
+        raise NotADirectoryError(f"{path} is the name of a directory")
     if os.path.exists(path):  # of the path itself: /dev/stdout leads to a pipe, which has no other name
         if not os.access(path, os.W_OK):
             raise PermissionError(f"{path} may not be written")

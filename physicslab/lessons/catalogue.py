@@ -1,16 +1,19 @@
 """The lessons that come with the program, in their order."""
 
 import atexit
+import re
 from contextlib import ExitStack
 from functools import cache
 from importlib.resources import as_file, files
 from pathlib import Path
+from typing import NamedTuple
 
 from physicslab.ecs.text import printable, suggestion
 from physicslab.lessons.blocks import LessonError
 from physicslab.lessons.lesson import Lesson
 from physicslab.lessons.reader import read_lesson
 
+_CITATION = re.compile(r" \[\w+\]")
 _KEPT = ExitStack()
 atexit.register(_KEPT.close)
 LIBRARY = _KEPT.enter_context(as_file(files(__package__) / "library"))
@@ -23,15 +26,31 @@ LESSONS = (
 """Their names; ``library/NAME.md`` is the file, ``library/de/NAME.md`` its words in German."""
 
 
+class Opening(NamedTuple):
+    """The beginning of a lesson: its title, its first sentences, and what one has to know before."""
+
+    title: str
+    text: str
+    needs: str
+
+
 @cache
-def titles(language: str = "") -> dict[str, str]:
-    """Return the titles of all of them by their names, in a language if it is there."""
+def openings(language: str = "") -> dict[str, Opening]:
+    """Return the beginnings of all of them by their names, in a language if it is there."""
     found = {}
     for name in LESSONS:
         words = LIBRARY / language / f"{name}.md"
-        with (words if words.is_file() else LIBRARY / f"{name}.md").open(encoding="utf-8") as file:
-            found[name] = next(line for line in file if line.startswith("title:")).partition(":")[2].strip()
+        text = (words if words.is_file() else LIBRARY / f"{name}.md").read_text(encoding="utf-8")
+        _, head, body = text.split("---\n", 2)
+        values = dict(line.split(": ", 1) for line in head.splitlines() if not line.startswith(" "))
+        first = " ".join(body.strip().partition("\n\n")[0].split())
+        found[name] = Opening(values["title"], _CITATION.sub("", first), values["needs"])
     return found
+
+
+def titles(language: str = "") -> dict[str, str]:
+    """Return the titles of all of them by their names, in a language if it is there."""
+    return {name: one.title for name, one in openings(language).items()}
 
 
 def lesson_in(name_or_path: str, language: str) -> Lesson:

@@ -5,11 +5,13 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+from physicslab.components.quantities import QUANTITIES
 from physicslab.diagnostics.figures import Figures
 from physicslab.ecs.quantity_text import (
     Expression,
     InvalidText,
     Quantity,
+    dotted,
     factor_of,
     in_unit,
     in_words,
@@ -215,6 +217,13 @@ def si_unit(quantity: Quantity) -> str:
     """Return the SI unit of a quantity; empty for a pure number."""
     words = in_words(quantity.dimension)
     return _UNITS.get(words, words)
+
+
+def unit_of(expression: Expression, quantity: Quantity) -> str:
+    """Return the unit of an expression in a graph: a quantity of the window has its own there, as rad."""
+    column = dotted(expression.node).rpartition(".")[2]
+    own = next((one.unit for one in QUANTITIES.values() if one.column == column), "")
+    return own or si_unit(quantity)
 
 
 def _answered(runs: LessonRuns, question: Question) -> Iterator[Row]:

@@ -24,7 +24,7 @@ from physicslab.export.recording import NotShown, RunRecorder
 from physicslab.files.checks import SceneError
 from physicslab.lessons import words
 from physicslab.lessons.answers import FORMAT, asked, grade_one
-from physicslab.lessons.check import LessonRuns, Row, row_of, si_unit
+from physicslab.lessons.check import LessonRuns, Row, row_of, unit_of
 from physicslab.lessons.film import Film
 from physicslab.lessons.lesson import Compare, Explain, Lesson, Part, Prose, Question, Recall, Reply, Run
 from physicslab.lessons.live_run import record_run
@@ -138,7 +138,7 @@ class _Page:
         def add(expression: Expression, name: str = "") -> int:
             series = [expression.value(figures.at(sample)) for sample in kept]
             columns.append(np.array([one.value for one in series], np.float32))
-            unit = si_unit(series[0])
+            unit = unit_of(expression, series[0])
             called, body = self._quantity(expression, world)
             document["quantities"].append(
                 {"name": name or called, "unit": unit, "body": None if name else body}

@@ -1,9 +1,11 @@
 """Places of bodies at which their joints hold: from where they are, with the least that is moved."""
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Transform
+from physicslab.components import Mass, Transform
 from physicslab.kernels.joints.measured import AX, BX, TURN_A
 from physicslab.state.joint_figures import errors_of_rows, measured_terms
 from physicslab.state.joint_rows import Role
@@ -14,12 +16,23 @@ type Numbers = NDArray[np.float64]
 
 _TURNS = 12
 """Newton's steps at most."""
+_MAX_TURN = 0.25
+"""How far the hand turns a body in a pause before joints are closed again [rad], lest it overshoots."""
 _APART, _MOST_ROWS = 1e-9, 400
 """How far joints are apart [m or rad] that are closed before a run, and how many rows they may have."""
 
 
-def closing_places(state: State, least: float, *, limits: bool = False) -> tuple[Numbers, Numbers] | None:
+def closing_places(
+    state: State,
+    least: float,
+    *,
+    limits: bool = False,
+    start: tuple[Numbers, Numbers] | None = None,
+    give: Numbers | None = None,
+) -> tuple[Numbers, Numbers] | None:
     """Return places (rows, 2) [m] and angles (rows,) [rad] at which joints hold; ``None`` if none is found.
+
+    Heavy bodies are moved least. Where light ones between them leave no way, all move as if they were equal.
 
     Parameters
     ----------
@@ -29,11 +42,30 @@ def closing_places(state: State, least: float, *, limits: bool = False) -> tuple
         The error that may be left [m or rad].
     limits : bool
         Whether limits are kept too, and ropes are no longer than they are.
+    start : float64 arrays (rows, 2) and (rows,), optional
+        Where bodies are [m], and their angles [rad], if not where the state has them.
+    give : float64 array (rows, 3), optional
+        Inverse masses along x and y [1/kg] and inverse moments of inertia [1/(kg m^2)], if others than those.
     """
-    joints, bodies, transform = state.joints, state.bodies, state.table(Transform)
-    owner = state.joints.row
-    position, angle = transform["position"].copy(), transform["angle"].copy()
-    give = np.sqrt(np.stack((bodies.inverse_mass, bodies.inverse_mass, bodies.inverse_inertia), axis=1))
+    transform = state.table(Transform)
+    begin = (transform["position"], transform["angle"]) if start is None else start
+    if give is not None:
+        return _closed(state, least, limits, begin, give)
+    mass, inertia = state.bodies.inverse_mass, state.bodies.inverse_inertia
+    give = np.stack((mass, mass, inertia), axis=1)
+    found = _closed(state, least, limits, begin, give)
+    if found is None:
+        found = _closed(state, least, limits, begin, give / np.where(mass > 0.0, mass, 1.0)[:, None])
+    return found
+
+
+def _closed(
+    state: State, least: float, limits: bool, start: tuple[Numbers, Numbers], give: Numbers
+) -> tuple[Numbers, Numbers] | None:
+    """Return places and angles at which joints hold, found with inverse masses and moments ``give``."""
+    joints, owner = state.joints, state.joints.row
+    position, angle = (values.copy() for values in start)
+    give = np.sqrt(give)
     for _ in range(_TURNS):
         terms = measured_terms(state, position, angle)
         error = errors_of_rows(state, terms)
@@ -67,6 +99,38 @@ def far_places(state: State, turn: float = 0.0) -> tuple[Numbers, Numbers] | Non
     if found is None or np.abs(found[1] - transform["angle"]).max() < turn:
         return None
     return None if np.array_equal(found[0], transform["position"]) and not turn else found
+
+
+def posed_places(
+    state: State, row: int, arm: tuple[float, float], way: tuple[float, float]
+) -> tuple[Numbers, Numbers] | None:
+    """Return places (rows, 2) [m] and angles (rows,) [rad] as a hand moves a point of a body by a way [m].
+
+    ``arm`` is the point from the body's middle [m], along the axes of the world.
+    Bodies that are joined to it follow; where they cannot, it gives way itself. ``None`` where no joint holds
+    it, or no places are found.
+    """
+    state.joints.refresh(state.entity_index)
+    joints, bodies, mass = state.joints, state.bodies, state.table(Mass)
+    if not len(joints) <= _MOST_ROWS or not ((joints.a == row) | (joints.b == row)).any():
+        return None
+    position, angle = (state.table(Transform)[name].copy() for name in ("position", "angle"))
+    position[row] += way
+    give = np.stack((bodies.inverse_mass, bodies.inverse_mass, bodies.inverse_inertia), axis=1)
+    give[row] = 0.0
+    found = closing_places(state, _APART, limits=True, start=(position, angle), give=give)
+    if found is None and mass.present[row]:
+        turns = not mass["fixed_rotation"][row] and mass["inertia"][row] > 0.0
+        give[row, :2] = 1.0 / mass["mass"][row]
+        give[row, 2] = 1.0 / mass["inertia"][row] if turns else 0.0
+        # An impulse at the point moves it by the way, and the body about it.
+        across = np.array((-arm[1], arm[0]))
+        impulse = np.linalg.solve(give[row, 0] * np.eye(2) + give[row, 2] * np.outer(across, across), way)
+        share = min(1.0, _MAX_TURN * math.hypot(*arm) / max(math.hypot(*way), 1e-300))
+        position[row] += give[row, 0] * impulse - way
+        angle[row] += share * give[row, 2] * (across @ impulse)
+        found = closing_places(state, _APART, limits=True, start=(position, angle), give=give)
+    return found
 
 
 def close_joints(state: State) -> None:

@@ -160,6 +160,11 @@ def leave(world: World, window: Window) -> None:
         window.ask_to_close(world, twice=window.has_closed)
 
 
+def quit_window(world: World, window: Window) -> None:
+    """Close the window, whatever is open in it; where something would be lost, at the second request."""
+    window.ask_to_close(world)
+
+
 def _gave_up(world: World, window: Window) -> bool:
     """Close or give up what is in front; return whether there was anything."""
     if window.measuring.cancel() or window.sketch.cancel() or _close_panel(window):

@@ -10,7 +10,7 @@ from physicslab.ecs.text import printable
 from physicslab.files.listing import scenes_here
 from physicslab.languages.catalogue import languages
 from physicslab.languages.language import Language
-from physicslab.lessons.catalogue import titles
+from physicslab.lessons.catalogue import openings
 from physicslab.scenes import SCENES
 from physicslab.view.controls import actions, dashboard_actions
 from physicslab.view.controls.choosing_keys import label_of
@@ -80,8 +80,9 @@ def commands(window: Window | None = None) -> Iterator[Command]:
     for name, scene in SCENES.items():
         opens = partial(open_from_list, source=name)
         yield Command(scene.title, "scene", scene.description, opens, scene.search_words)
-    for name, title in titles("" if window is None else window.language).items():
-        yield Command(title, "lesson", "predict, run, compare, explain", opener(name), (name,))
+    english = openings()
+    for name, one in openings("" if window is None else window.language).items():
+        yield Command(one.title, "lesson", one.text, opener(name), (name, one.needs, *english[name]))
     for path in scenes_here():
         yield Command(printable(path.name), "file", str(path), partial(open_from_list, source=path))
     for name, quantity in QUANTITIES.items():

@@ -324,8 +324,9 @@ CONTROLS: tuple[Control, ...] = (
     _switch("F3", "scene in words", "f3", "shows_words", "help",
             "The scene in words, to be read out or copied: what is there, where, how it moves, its energies"),
     _switch("F1", "all keys", "f1", "help", "help", "All keys"),
-    Control("Esc", "quit", "escape", actions.leave, group="quit", tip="Quit",
-            click=lambda world, window: window.ask_to_close(world)),
+    Control("Esc", "quit", "escape", actions.leave, also=("ctrl+q",), group="quit",
+            tip="Quit; Ctrl+Q does so whatever is open",
+            click=actions.quit_window),
 )  # fmt: skip
 """Everything there is to press, in the order of the help and the menus."""
 
@@ -336,7 +337,7 @@ KEYS: dict[str, Action] = {
     if key and control.action is not None
 }
 """The action of each key when it is pressed, by its name in SDL."""
-KEYS |= ARROWS
+KEYS |= ARROWS | {"ctrl+q": actions.quit_window}
 KEYS |= {key: partial(actions.choose_tool, tool=tools.TOOLS[name]) for key, name in tools.DIGITS.items()}
 
 RELEASES: dict[str, Action] = {

@@ -123,7 +123,7 @@ def toggle_film(world: World, window: Window) -> None:
     """Let the user choose a film, or no longer; end the one that is being made."""
     filming = window.filming
     if filming.running:
-        filming.end()
+        filming.end(window.edits.history)
         return
     filming.choosing = not filming.choosing
     if filming.choosing:

@@ -14,7 +14,7 @@ from physicslab.view.canvas.quantities import quantity
 from physicslab.view.controls.drawing import join
 from physicslab.view.controls.drawn import Drawn
 from physicslab.view.controls.picking import bodies_at
-from physicslab.view.window.ends import local_point, spring_between
+from physicslab.view.window.ends import STUCK, local_point, spring_between
 from physicslab.view.window.placing import meetings
 from physicslab.view.window.sketch import Grip
 from physicslab.view.window.window import Action, Window
@@ -38,7 +38,7 @@ type Made = Component | str
 def _stuck(world: World, name: str, *bodies: int | None) -> str:
     """Return why a joint between bodies is of no use: none of its ends could move; empty where one can."""
     moves = any(body is not None and world.has(body, Velocity) for body in bodies)
-    return "" if moves else f"No {name}: neither of its ends could move"
+    return "" if moves else f"No {name}: {STUCK}"
 
 
 # ---- two ends: springs, rods, ropes ------------------------------------------------------------------------
@@ -112,7 +112,7 @@ def _slot(world: World, window: Window, grips: Grips) -> Made:
 
 
 def _pulley(world: World, window: Window, grips: Grips) -> Made:
-    one, wheel_a, other, wheel_b = grips
+    one, wheel_a, other, wheel_b = grips if grips[0].body is not None else (*grips[2:], *grips[:2])
     if one.body is None or one.body == other.body:
         return "A pulley holds two bodies, or a body and a point: begin on a body"
     made = Pulley(
@@ -122,14 +122,15 @@ def _pulley(world: World, window: Window, grips: Grips) -> Made:
     return _stuck(world, "pulley", one.body, other.body) or made
 
 
-def _gear(world: World, window: Window, grips: Grips) -> Made:
+def _gear(world: World, window: Window, grips: Grips, name: str = "gear", sense: float = -1.0) -> Made:
+    """Return what couples two joints: a gear, whose wheels turn against each other, or a belt (sense 1)."""
     joints = [_turning(world, grip) for grip in grips]
     first, second = joints
     if first is None or second is None:
-        return "A gear couples two bodies that turn about pins, or slide in slots: pin them first"
+        return f"A {name} couples two bodies that turn about pins, or slide in slots: pin them first"
     if first.entity == second.entity:
-        return "A gear couples two different joints"
-    return Gear(first.entity, second.entity, ratio=_ratio(world, first, second, grips))
+        return f"A {name} couples two different joints"
+    return Gear(first.entity, second.entity, ratio=sense * _ratio(world, first, second, grips))
 
 
 def _turning(world: World, grip: Grip) -> Joint | None:
@@ -141,14 +142,14 @@ def _turning(world: World, grip: Grip) -> Joint | None:
 
 
 def _ratio(world: World, first: Joint, second: Joint, grips: Grips) -> float:
-    """Return the ratio of a gear of two wheels, that of their radii; -1 for others."""
+    """Return the ratio of a belt around two wheels, that of their radii; 1 for others."""
     sign, radii = 1.0, []
     for joint, grip in zip((first, second), grips, strict=True):
         body = grip.body or 0
         is_disc = world.has(body, Shape) and world.component(body, Shape).kind == "circle"
         radii.append(world.component(body, Shape).radius if is_disc else 1.0)
         sign *= 1.0 if world.entity_index.row_of[body] == joint.b else -1.0
-    return -sign * max(round(radii[0] / radii[1] / _ROUND), 1) * _ROUND
+    return sign * max(round(radii[0] / radii[1] / _ROUND), 1) * _ROUND
 
 
 # ---- the table ---------------------------------------------------------------------------------------------
@@ -182,6 +183,8 @@ JOINTS = (
                                  "Drag from the other body to its wheel", "... to its wheel")),
     Drawn("gear", "Gear", "click a body on a pin, then another: they turn against each other",
           join=_gear, prompts=("Click a body on a pin", "... and another")),
+    Drawn("belt", "Belt", "click a body on a pin, then another: they turn the same way",
+          join=partial(_gear, name="belt", sense=1.0), prompts=("Click a body on a pin", "... and another")),
 )  # fmt: skip
 """All joints that are drawn, in the order of the tools."""
 _DRAWN = {drawn.name: drawn for drawn in JOINTS}

@@ -63,7 +63,7 @@ ICONS = {
     "beam": "\uf7a4", "polygon": "\uf5ee", "ramp": "\uf0d8",
     "pendulum": "\uf5cd", "chain": "\uf0c1", "spring": "\uf83e", "rod": "\uf715", "rope": "\uf4d7",
     "pin": "\uf192", "motor": "\uf863", "slot": "\uf337", "weld": "\uf46a", "pulley": "\uf655",
-    "gear": "\uf013", "remove": "\uf12d", "ruler": "\uf545",
+    "gear": "\uf013", "belt": "\uf363", "remove": "\uf12d", "ruler": "\uf545",
     "protractor": "\uf568", "gate": "\uf11e", "note": "\uf249", "pan": "\uf0b2",
     "more": "\uf141", "brush": "\uf1fc", "wall": "\uf00a", "dominoes": "\uf7a5", "stack": "\uf5fd",
     "pyramid": "\uf6fc", "heap": "\uf1ce", "pit": "\uf01c",

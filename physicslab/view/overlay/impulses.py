@@ -27,14 +27,11 @@ _ZERO_FRICTION_SHARE = 1e-9
 """Friction of so small a share of the normal impulse is rounding, and written as 0."""
 
 
-def draw_impulses(
-    world: World, overlays: Overlays, written: Collection[int], covered: Sequence[Rect], on: Drawing
-) -> list[Rect]:
-    """Draw the impulses of the impacts of the last second, and of what rests, with cones and numbers.
+def draw_impulses(world: World, overlays: Overlays, written: Collection[int], on: Drawing) -> list[Label]:
+    """Draw impulses of impacts of the last second and of what rests, with cones; return their numbers.
 
-    Resting contacts have their numbers beside them only for the bodies in ``written``, the points of a
-    pair added up: a heap would be hidden under them. Numbers keep clear of what is ``covered``; return where
-    they are [px].
+    Resting contacts have numbers only for the bodies in ``written``, the points of a pair added up: a heap
+    would be hidden under them.
     """
     impacts = overlays.impacts.recent(world.time)
     impacts = impacts[np.argsort(impacts["time"], kind="stable")]  # the newest on top
@@ -55,8 +52,7 @@ def draw_impulses(
     met = sorted(met, key=rank)[: LABELLED if len(impacts) <= CROWD else LABELLED_IN_CROWD]
     held = _strongest(of_written, np.ones(len(of_written)), overlays, False, on)
     chosen = sorted([*met, *held], key=rank)[:LABELLED]
-    labels = [Label(one.key, one.at, _words_of(one, world.contacts.impulse_dt)) for one in chosen]
-    return list(overlays.labels.draw(labels, covered, on).values())
+    return [Label(one.key, one.at, _words_of(one, world.contacts.impulse_dt)) for one in chosen]
 
 
 def _seen(at: Points, size: tuple[int, int], covered: Sequence[Rect]) -> NDArray[np.bool_]:

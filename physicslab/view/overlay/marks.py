@@ -57,7 +57,7 @@ _CORNERS = 48
 """Straight lines that a circle is drawn as; half of them where there are many circles."""
 _MANY = 64
 _WIDTH = 2.0
-_SPRING_WIDTH = 15.0
+_SPRING_WIDTH, _RIM_WIDTH = 15.0, 3.0
 """Width of the band along a spring or a joint [px]."""
 _FAR = 1e6
 """Lines farther out of the picture than this are not drawn [px]."""
@@ -83,7 +83,8 @@ def draw_selection(world: World, entities: Sequence[int], on: Drawing, colour: C
         if (spring := spring_state(world, entity)) is not None:
             lines = on.camera.project(np.array([tuple(spring.start), tuple(spring.end)]))[None]
         if len(lines) and (np.abs(lines) < _FAR).all():
-            on.canvas.lines(lines[:, 0], lines[:, 1], colour or on.theme.accent, _SPRING_WIDTH, 0.5)
+            width, alpha = (_SPRING_WIDTH, 0.5) if len(lines) == 1 else (_RIM_WIDTH, 1.0)  # rims overlap
+            on.canvas.lines(lines[:, 0], lines[:, 1], colour or on.theme.accent, width, alpha)
 
 
 _HAND, _LEAST_BAND = 9.0, 4.0

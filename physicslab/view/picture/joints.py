@@ -1,8 +1,9 @@
-"""Joints: pins with screws, limits and motors, slots as rails, welds as beads, gears with toothed rims."""
+"""Joints: pins with screws, limits and motors, slots as rails, welds as beads; the table of all kinds."""
 
 import math
 from collections.abc import Callable
 from functools import partial
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +13,7 @@ from physicslab.state.joint_rows import KINDS, ends_of
 from physicslab.theme import Theme
 from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.canvas import Canvas, Points
+from physicslab.view.picture.gears import draw_gears, gear_paths
 from physicslab.view.picture.links import draw_pulleys, draw_rods, draw_ropes, line_ends, link_ends
 from physicslab.view.picture.pen import Pen
 from physicslab.world import World
@@ -26,8 +28,6 @@ _RAIL, _SLIDER = 5.5, (9.0, 6.0)
 """Half the width of a rail, half the sides of its slider [px]."""
 _OPEN = 0.6
 """How far beyond its slider a rail without a limit is drawn [m]."""
-_TOOTH, _PITCH = 5.5, 11.0
-"""How far teeth stand out of a rim, and about how far apart they are [px]."""
 _BEAD = 3.8
 """Radius of the beads of a weld [px]."""
 
@@ -182,7 +182,7 @@ def _draw_drive(pen: Pen, slider: Points, turn: float, speed: float) -> None:
         pen.paths(_arrow_head(tip, way, 4.0 * pen.unit), pen.theme.accent, 1.8)
 
 
-# ---- welds and gears ---------------------------------------------------------------------------------------
+# ---- welds -------------------------------------------------------------------------------------------------
 
 
 def _draw_welds(world: World, pen: Pen) -> None:
@@ -199,57 +199,8 @@ def _draw_welds(world: World, pen: Pen) -> None:
         pen.rings(centre + n * across, _BEAD, pen.dark(pen.theme.pin, 0.6), pen.dark(pen.theme.pin, 0.2), 1.0)
 
 
-def _draw_gears(world: World, pen: Pen) -> None:
-    """Add toothed rims to two pinned wheels that a gear couples, and a dashed line between other joints."""
-    table, known = world.table(Gear), _wheels(world)
-    for row in world.batch(Gear).rows.tolist():
-        ends = [int(table[name][row]) for name in ("first", "second")]
-        if not all(end in known for end in ends):
-            continue
-        (one, first), (other, second) = (known[end] for end in ends)
-        gap, ratio = float(np.hypot(*(other - one))), abs(float(table["ratio"][row]))
-        spots = pen.camera.project(np.stack((one, other)))
-        if not np.isfinite(spots).all():
-            continue
-        if math.isnan(first) or math.isnan(second):
-            pen.lines(spots[:1], spots[1:], pen.dark(pen.theme.rod), 2.0)
-            continue
-        radii = np.array((gap * ratio, gap)) / (1.0 + ratio) * pen.camera.scale
-        teeth = np.maximum(np.round(2.0 * math.pi * radii / (_PITCH * pen.unit)), 6.0)
-        teeth[1] = max(round(teeth[0] / ratio), 6)  # as many go by on both
-        way = math.atan2(float(other[1] - one[1]), float(other[0] - one[0]))
-        for n, angle in enumerate((first, second)):
-            _draw_rim(pen, spots[n], float(radii[n]), int(teeth[n]), angle, way + n * math.pi, n)
-
-
-def _wheels(world: World) -> dict[int, tuple[Points, float]]:
-    """Return by entity where each joint is that a gear can couple [m], and the angle of a pin [rad]."""
-    found: dict[int, tuple[Points, float]] = {}
-    for kind in (Pin, Slot):
-        at_a, at_b, _, fixed = link_ends(world, kind)
-        angle = np.where(fixed, *_angles(world, kind)).tolist()
-        for n, entity in enumerate(world.batch(kind).entities.tolist()):
-            found[entity] = (at_a[n], angle[n]) if kind is Pin else (at_b[n], math.nan)
-    return found
-
-
-def _draw_rim(
-    pen: Pen, centre: Points, radius: float, teeth: int, angle: float, meets: float, n: int
-) -> None:
-    """Add a rim with teeth that turn with its wheel; the second one has gaps where the first has teeth."""
-    colour, step = pen.theme.rod, 2.0 * math.pi / teeth
-    turns = angle + step * np.arange(teeth) + (0.5 * step if n else 0.0)
-    out = np.stack((np.cos(turns), -np.sin(turns)), axis=1)
-    inner, outer = radius - 0.5 * _TOOTH * pen.unit, radius + 0.4 * _TOOTH * pen.unit
-    width = max(0.42 * radius * step / pen.unit, 1.0)
-    rim = _around(centre, inner - 1.5 * pen.unit, 0.0, 2.0 * math.pi)
-    for grown, shade in ((1.8, pen.dark(colour, 0.65)), (0.0, colour)):
-        pen.lines(centre + inner * out, centre + outer * out, shade, width + grown)
-        pen.paths(rim, shade, 3.4 + grown)
-
-
 _PICTURES: dict[type, Callable[[World, Pen], None]] = {
-    Gear: _draw_gears, Slot: _draw_slots, Weld: _draw_welds, Pulley: draw_pulleys, Rope: draw_ropes,
+    Gear: draw_gears, Slot: _draw_slots, Weld: _draw_welds, Pulley: draw_pulleys, Rope: draw_ropes,
     Rod: draw_rods, Pin: _draw_pins,
 }  # fmt: skip
 """The function that draws each kind of joint, the lowest first; one without is drawn as a rod."""
@@ -263,7 +214,7 @@ _PICTURES |= _LIKE_RODS
 def joint_at(world: World, camera: Camera, pixel: tuple[float, float], *, lines: bool = False) -> int | None:
     """Return the entity of the joint at a place on the screen [px], or ``None``.
 
-    By its screw, slider, bead or wheel; with ``lines`` by its bar or rope, which bodies lie before.
+    By its screw, slider, bead or wheel; with ``lines`` by its bar, rope, rim or belt, behind bodies.
     """
     best, found = math.inf, None
     for kind in _PICTURES:
@@ -279,6 +230,10 @@ def joint_at(world: World, camera: Camera, pixel: tuple[float, float], *, lines:
         nearest = int(np.argmin(gaps))
         if gaps[nearest] < best:
             best, found = float(gaps[nearest]), int(world.batch(kind).entities[nearest])
+    for entity, paths in gear_paths(world, camera).items() if lines else ():
+        gap = min(float(gaps_to(path[:-1], path[1:], pixel).min()) for path in paths)
+        if gap < best:
+            best, found = gap, entity
     return found if best <= (_NEAR_LINE if lines else _CATCH) else None
 
 
@@ -302,4 +257,6 @@ def joint_lines(world: World, camera: Camera, entity: int) -> Points:
             n = entities.index(entity)
             start, end = line_ends(world, camera, kind)
             found.append((start[n], end[n]))
+    for path in gear_paths(world, camera).get(entity, ()):
+        found += list(pairwise(path))
     return np.array(found).reshape(-1, 2, 2)

@@ -2,6 +2,7 @@
 
 import ctypes
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -21,6 +22,8 @@ _MASKS = (0x00FF0000, 0x0000FF00, 0x000000FF, 0xFF000000)
 
 
 type Clip = tuple[float, float, float, float]
+type Overlay = tuple[pygame.Surface, tuple[int, int], pygame.Rect]
+"""A surface, its corner, and the part of the window in which it is seen [px]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,10 +87,14 @@ class Pictures:
         if due := self.due:
             self._paint(min(due, key=lambda name: self._pictures[name].number))
 
-    def show(self, surface: pygame.Surface) -> None:
-        """Lay the pictures over a surface, in their order."""
-        for picture in self._pictures.values():
+    def show(self, surface: pygame.Surface, overlays: Mapping[str, Sequence[Overlay]] | None = None) -> None:
+        """Lay the pictures over a surface, in their order, each with the overlays that are named after it."""
+        for name, picture in self._pictures.items():
             surface.blit(picture.surface, picture.sheet.box, special_flags=pygame.BLEND_PREMULTIPLIED)
+            for overlay, corner, clip in overlays.get(name, ()) if overlays else ():
+                surface.set_clip(clip)
+                surface.blit(overlay, corner)
+                surface.set_clip(None)
 
     def of(self, ending: str, paper: Colour) -> pygame.Surface | None:
         """Return the window whose name ends so as it is painted, on paper; ``None`` if there is none."""

@@ -34,14 +34,14 @@ _ONLY_WHERE_TAKEN = (
 """Events that Dear ImGui gets only where they are for panels: Tab would go to the first field."""
 _FOR_WINDOWS = (pygame.K_F6, pygame.K_F10, pygame.K_LALT)
 """Keys that go from panel to panel: they are never for the one that has the others."""
-_FOR_FILES = (pygame.K_n, pygame.K_o, pygame.K_s)
-"""Keys that are for files of scenes while Ctrl is held, whatever is being written."""
+_FOR_FILES = (pygame.K_n, pygame.K_o, pygame.K_q, pygame.K_s)
+"""Keys that are for files of scenes, or quit, while Ctrl is held, whatever is being written."""
 _NOWHERE = -3.0e38
 """The reported position of the mouse while it is not for panels."""
 
 
 def is_for_files(event: pygame.Event) -> bool:
-    """Whether a key saves or opens a scene, or makes a new one."""
+    """Whether a key saves or opens a scene, makes a new one, or quits."""
     return event.key in _FOR_FILES and bool(getattr(event, "mod", 0) & pygame.KMOD_CTRL)
 
 

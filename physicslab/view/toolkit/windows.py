@@ -14,6 +14,7 @@ from physicslab.theme import Theme
 from physicslab.view.canvas.canvas import Rect
 from physicslab.view.canvas.drawable_text import drawable
 from physicslab.view.canvas.quantities import with_powers
+from physicslab.view.toolkit.pictures import Overlay
 from physicslab.view.toolkit.style import Fonts
 
 _FLAGS = imgui.WindowFlags_
@@ -120,8 +121,8 @@ class Windows:
         The language of all words; widgets are found by the program's own words whatever it is.
     do_next : callable
         Has an action done next; further arguments are the action's.
-    pictures : list of tuples
-        Overlays of panels: a surface, its corner, and the part of the window in which it is seen [px].
+    pictures : dict of lists of tuples
+        Overlays by the draw list they lie on: a surface, its corner, and the part in which it is seen [px].
     """
 
     def __init__(self, fonts: Fonts, theme: Theme) -> None:
@@ -130,7 +131,7 @@ class Windows:
         self.spoken: dict[str, Spoken] = {}
         self.words: list[str] = []
         self.rows: dict[str, str] = {}
-        self.pictures: list[tuple[pygame.Surface, tuple[int, int], pygame.Rect]] = []
+        self.pictures: dict[str, list[Overlay]] = {}
         self.keys_go_to = self.focused = ""
         self.writes_at_once = False
         self.scenes = 0
@@ -146,7 +147,7 @@ class Windows:
     def begin(self, theme: Theme, room: Rect = (0, 0, 1 << 20, 1 << 20), *, is_narrow: bool = False) -> None:
         """Forget the frame before; where the world ``is_narrow`` windows stand below it, not at its sides."""
         self.theme, self.room, self._is_narrow = theme, room, is_narrow
-        self.places, self.words, self.rows, self.pictures, self.focused = {}, [], {}, [], ""
+        self.places, self.words, self.rows, self.pictures, self.focused = {}, [], {}, {}, ""
         self.spoken = {}
 
     def rearrange(self, arrangement: str) -> None:
@@ -368,15 +369,9 @@ class Windows:
         return ImVec2(*self.fitted(width, height))
 
     def picture(self, surface: pygame.Surface, corner: tuple[int, int], clip: pygame.Rect) -> None:
-        """Lay a picture over a panel, as far as it lies within ``clip``."""
-        self.pictures.append((surface, corner, clip))
-
-    def show_pictures(self, surface: pygame.Surface) -> None:
-        """Lay the pictures over a surface, after the panels."""
-        for picture, corner, clip in self.pictures:
-            surface.set_clip(clip)
-            surface.blit(picture, corner)
-        surface.set_clip(None)
+        """Lay a picture over the panel that is being built, as far as it lies within ``clip``."""
+        owner = str(imgui.get_window_draw_list()._owner_name)
+        self.pictures.setdefault(owner, []).append((surface, corner, clip))
 
     def held(self, label: str) -> str:
         """Return a label without words for what is written or dragged in, which ends with the scene."""

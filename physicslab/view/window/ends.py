@@ -39,6 +39,8 @@ def local_point(world: World, body: int | None, place: Vector2) -> Vector2:
 # ---- springs -----------------------------------------------------------------------------------------------
 
 
+STUCK = "neither of its ends could move. Planks and walls are fixed; a beam or a box moves"
+"""Why a spring or a joint would be of no use."""
 _FREQUENCY = 2.0
 """How fast two bodies swing on a new spring [Hz]: soft enough to be seen, stiff enough to carry them."""
 _DAMPING_RATIO = 0.05
@@ -60,7 +62,7 @@ def spring_between(
     """
     inverse = _inverse_mass(world, one) + (_inverse_mass(world, other) if other is not None else 0.0)
     if inverse == 0.0:
-        return "No spring: neither of its ends could move"
+        return f"No spring: {STUCK}"
     start, end = (local_point(world, body, place) for body, place in zip((one, other), places, strict=True))
     length = (point_of(world, other, end) - point_of(world, one, start)).magnitude
     if length == 0.0:

@@ -167,9 +167,15 @@ class Filming:
             film.give_up()
             self._notify(words, True)
 
-    def end(self) -> None:
-        """Keep what was filmed from some time on; give up a film of the time line that is not whole."""
+    def end(self, history: History | None = None) -> None:
+        """Keep what was filmed from some time on; give up a film of the time line that is not whole.
+
+        A history goes back to where it was before that film.
+        """
         if self._end is None:
             self.finish()
-        else:
-            self.give_up()
+            return
+        was_on = self.running
+        self.give_up()
+        if was_on and history is not None:
+            history.seek(self._back)

@@ -16,6 +16,7 @@ from physicslab.ecs.component import Component
 from physicslab.ecs.config import WindowConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.history import AddComponent, Command, RemoveComponent, SetField
+from physicslab.state.joint_closing import posed_places
 from physicslab.view.window.placing import free_way, outlines_of, way_within
 from physicslab.world import World
 
@@ -30,6 +31,8 @@ _MARGIN = 0.01
 """Share of its size up to which it comes near at any speed."""
 _PASSES = 4
 """How often the limits of several neighbours are gone through."""
+_POSED = 1e-7
+"""How far joints must let a body move, or turn, for it to be moved in a pause [m or rad]."""
 _THROWN = 0.5
 """Speed [m/s] from which a body that is let go counts as thrown."""
 _MIN_THROW_TIME = 0.03
@@ -259,8 +262,25 @@ class Hand:
         elif paused:
             self._set(world, self.entity, Velocity, "linear", Vector2())
             if gap:
-                self._set(world, self.entity, Transform, "position", transform.position + gap)
-                world.edited()
+                self._pose(world, self.entity, gap)
+
+    def _pose(self, world: World, entity: int, way: Vector2) -> None:
+        """Move a body by a way [m] while time stands still, and what joints hold together with it."""
+        world.synchronise()
+        transform, row = world.table(Transform), world.entity_index.row_of[entity]
+        arm = world.component(entity, Held).grip.rotated(world.component(entity, Transform).angle)
+        places = posed_places(world, row, (arm.x, arm.y), (way.x, way.y))
+        if places is None:
+            self._set(world, entity, Transform, "position", world.component(entity, Transform).position + way)
+            world.edited()
+            return
+        gone = np.abs(places[0] - transform["position"]).max(axis=1)
+        turned = np.abs(places[1] - transform["angle"])
+        for n in np.flatnonzero(np.maximum(gone, turned) > _POSED).tolist():
+            moved = int(world.entity_index.entities[n])
+            self._set(world, moved, Transform, "position", Vector2(*places[0][n].tolist()))
+            self._set(world, moved, Transform, "angle", float(places[1][n]))
+            world.edited()
 
     def release(self, world: World, place: Vector2, now: float, paused: bool) -> None:
         """Let go at a point of the world [m]: the body keeps the velocity that the hand had of late.

@@ -252,8 +252,13 @@ class OpenLesson:
 
     @property
     def waits(self) -> bool:
-        """Whether time is shut: of the run whose scene is shown something is still to be predicted."""
-        return self._next is not None and not self.open_to(self._next)
+        """Whether time is shut: of the run whose scene is shown something is still to be predicted.
+
+        A step without a run shows the scene of the next one.
+        """
+        later = (part for step in self.lesson.steps[self.step :] for part in step.parts)
+        run = self._next or next((part for part in later if isinstance(part, Run)), None)
+        return run is not None and not self.open_to(run)
 
     @property
     def coming(self) -> Run | None:

@@ -27,7 +27,7 @@ _SIDES = 4
 """How many bodies it is moved away from, one after the other."""
 _FOOT = 0.5
 """How far from what is below the foot of something may be put down to stand on it [m]."""
-_BEYOND, _NO_ROOM = Sentence("it would reach beyond the walls"), Sentence("there is no room here")
+_BEYOND = Sentence("it would reach beyond the walls")
 _STRIDE, _MAX_STRIDES, _HALVINGS = 0.1, 64, 10
 """A way is looked at every so many metres, at so many places at most, and then more closely."""
 
@@ -42,11 +42,13 @@ def refused_place(world: World, wanted: Outlines) -> str:
     """Return why something cannot be made here; empty where it can."""
     if _is_outside(world, wanted):
         return _BEYOND
-    others = outlines_of(world, solid_rows(world))
+    rows = solid_rows(world)
+    others = outlines_of(world, rows)
     for n in range(len(wanted.place)):
         for other in overlapping(wanted, n, others):
             if overlap(wanted, n, others, int(other))[0] > _ALLOWED:
-                return _NO_ROOM
+                body = world.label(int(world.entity_index.entities[rows[other]]))
+                return Sentence("there is no room here, {body} is in the way", body=body)
     return ""
 
 

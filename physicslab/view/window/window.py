@@ -412,7 +412,7 @@ class Window:
             self.closing = True
             return
         self._may_close_until = self.now + _PATIENCE
-        words = f"Esc again closes the window; {', and '.join(reasons)}" if reasons else "Esc again quits"
+        words = f"Once more closes the window; {', and '.join(reasons)}" if reasons else "Esc again quits"
         self.notify(words, _PATIENCE)
 
     def coming(self, world: World) -> float:

@@ -2,6 +2,7 @@
 
 import re
 from pathlib import Path
+from textwrap import shorten
 from typing import Any
 
 import pygame
@@ -167,7 +168,7 @@ def _build_words(ui: Ui, source: Source, known: Known) -> None:
         name = printable(source.name)
         words = words if name == known.title else f"{name}. {words}"
         words = words if source.parent == Path.cwd() else f"{printable(str(source.parent))}: {words}"
-    ui.faint(words[:150], wrapped=False)
+    ui.faint(shorten(words, 150, placeholder=" ..."), wrapped=False)
 
 
 def _text(ui: Ui, source: Source, known: Known) -> str:

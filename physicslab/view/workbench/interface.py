@@ -1,6 +1,7 @@
 """The panels around the world: menus, tools, transport, and the selection or the world in figures."""
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from operator import attrgetter
 
 import pygame
@@ -415,9 +416,7 @@ class Interface:
 
     def draw(self, canvas: Canvas) -> None:
         """Show panels as they were built last."""
-        canvas.paint(self.toolkit.pictures.show)
-        if self.ui.pictures:
-            canvas.paint(self.ui.show_pictures)
+        canvas.paint(partial(self.toolkit.pictures.show, overlays=self.ui.pictures))
         self._scene_panels.save_picture(self._window, self.toolkit)
 
     @property

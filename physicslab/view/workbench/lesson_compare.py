@@ -18,8 +18,8 @@ from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.lesson import OpenLesson
 from physicslab.view.workbench.lesson_plots import plot_compared
 
-RIGHT, WRONG, RUN = "\uf00c", "\uf00d", "\uf04b"
-"""Icons of a right answer, a wrong one, and of a run."""
+RIGHT, WRONG, UNLIKE, RUN = "\uf00c", "\uf00d", "\uf53e", "\uf04b"
+"""Icons of a right answer, a wrong one, a gap where the theory need not hold, and of a run."""
 
 _NUMBER = 4.2
 """Least width of a column, in heights of the text."""
@@ -124,7 +124,8 @@ def _build_row(
         small = (100.0 * row.gap, "%") if is_share else (apart, written_unit(row.unit))
         gap = round_quantity(*small)
     near = row.gap <= row.tolerance
-    mark, colour = (RIGHT, ui.theme.accent) if near else (WRONG, ui.theme.error)
+    apart_mark = (WRONG, ui.theme.error) if row.holds else (UNLIKE, ui.theme.faint)
+    mark, colour = (RIGHT, ui.theme.accent) if near else apart_mark
     ui.text(f"{mark}\u00a0{gap}", colour, wrapped=True)
     ui.tip(_gap_words(row, near=near))
 

@@ -9,7 +9,7 @@ from imgui_bundle import ImVec2, imgui, implot
 from physicslab.diagnostics.samples import quantity_of
 from physicslab.ecs.quantity_text import Expression, InvalidText, dotted, evaluate, factor_of
 from physicslab.languages.sentence import Sentence, proper
-from physicslab.lessons.check import Row, si_unit
+from physicslab.lessons.check import Row, unit_of
 from physicslab.lessons.lesson import Compare, Question
 from physicslab.theme import Colour
 from physicslab.view.canvas.quantities import rounded_up, written_unit
@@ -47,7 +47,8 @@ def plot_run(ui: Ui, lesson: OpenLesson, trial: Trial) -> None:
     usual = lesson.made(trial.run) if trial.case.values else None
     for n, curve in enumerate(trial.curves):
         try:
-            units = [si_unit(one.value(trial.live.figures.at(0))) for one in (curve.against, curve.along)]
+            first = trial.live.figures.at(0)
+            units = [unit_of(one, one.value(first)) for one in (curve.against, curve.along)]
         except InvalidText:
             continue
         shown = zip((curve.against, curve.along), units, strict=True)

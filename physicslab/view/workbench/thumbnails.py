@@ -9,7 +9,7 @@ import pygame
 from physicslab.components import Charge, Mass, Medium, Shape, Spring, Trail, Transform, Velocity
 from physicslab.ecs.text import printable
 from physicslab.files.scene import SceneError, load_scene
-from physicslab.lessons.catalogue import find_lesson, titles
+from physicslab.lessons.catalogue import find_lesson, openings
 from physicslab.scenes import SCENES
 from physicslab.state.masses import Diverged
 from physicslab.theme import Theme
@@ -105,8 +105,10 @@ class Thumbnails:
                 tags = *scene.teaches, *scene.tags
                 self._known[source] = Known(scene.title, scene.description, tags, also=scene.search_words)
             elif isinstance(source, str):
-                title = titles(self._language)[source.removeprefix(OF_LESSON)]
-                self._known[source] = Known(title, "Predict, run, compare, explain", (LESSON_TAG,))
+                name = source.removeprefix(OF_LESSON)
+                own, english = openings(self._language)[name], openings()[name]
+                also = own.needs, *english
+                self._known[source] = Known(own.title, own.text, (LESSON_TAG,), also=also)
             elif self.missing:
                 return None
             else:

@@ -21,6 +21,7 @@ from physicslab.view.overlay import marks
 from physicslab.view.overlay.forces import draw_free_body, draw_vectors
 from physicslab.view.overlay.impulses import draw_impulses
 from physicslab.view.overlay.instruments import draw_instruments, instruments_of
+from physicslab.view.overlay.labels import Label
 from physicslab.view.overlay.whole import draw_wholes
 from physicslab.view.picture.joints import joint_at
 from physicslab.view.picture.picture import draw_world
@@ -70,9 +71,12 @@ class WorldView:
             draw_wholes(world, window.selection.entities, overlays, on)
         marks.draw_selection(world, window.selection.entities, on)
         taken = list(overlays.covered)  # labels keep clear of those of the kinds before
+        has_impulses = overlays.impulses and not overlays.awaits_prediction
+        smaller = replace(on, size=on.size - 2)
+        numbers = self._draw_impulses(world, smaller) if has_impulses else []  # below the names of forces
         taken += self._draw_forces(world, taken, on)
-        if overlays.impulses and not overlays.awaits_prediction:
-            taken += self._draw_impulses(world, taken, on)
+        if has_impulses:
+            taken += overlays.labels.draw(numbers, taken, smaller).values()
         if window.band is not None:
             marks.draw_band(camera.to_screen(window.band), window.pointer, on)
         self._draw_instruments(world, taken, on)
@@ -118,13 +122,12 @@ class WorldView:
         moved, smaller = measured.moved(world, chosen[0]), replace(on, size=on.size - 1)
         return draw_free_body(measured.forces, moved, world.time, overlays, covered, smaller)
 
-    def _draw_impulses(self, world: World, covered: Sequence[Rect], on: Drawing) -> list[Rect]:
+    def _draw_impulses(self, world: World, on: Drawing) -> list[Label]:
         """Draw impulses; resting contacts have numbers where they are selected or under the cursor."""
         window = self._window
         hovered = None if window.pointer_on_panel else body_at(world, window.camera, window.pointer)
         written = {*window.selection.entities, *(() if hovered is None else (hovered,))}
-        smaller = replace(on, size=on.size - 2)
-        return draw_impulses(world, window.overlays, written, covered, smaller)
+        return draw_impulses(world, window.overlays, written, on)
 
     def _draw_instruments(self, world: World, covered: Sequence[Rect], on: Drawing) -> None:
         """Draw what measures, and what is being placed of it."""
