@@ -190,7 +190,7 @@ class Overlays:
 
 
 _WIDTH = 19.5
-"""Width of the legend, in heights of the text."""
+"""Least width of the legend, in heights of the text."""
 _MAX_SHARE = 0.3
 """Share of the world's room that it may take with all its words."""
 
@@ -285,7 +285,7 @@ def legends_of(overlays: Overlays, room: tuple[int, int], on: Drawing) -> Iterat
         return
     width = round(_WIDTH * on.size)
     whole = _laid_out(overlays, width, on)
-    if width <= room[0] and width * whole.size[1] <= _MAX_SHARE * room[0] * room[1]:
+    if whole.size[0] <= room[0] and whole.size[0] * whole.size[1] <= _MAX_SHARE * room[0] * room[1]:
         yield whole
     brief = _laid_out(overlays, 0, on)
     if brief.size[0] > room[0]:
@@ -294,7 +294,7 @@ def legends_of(overlays: Overlays, room: tuple[int, int], on: Drawing) -> Iterat
 
 
 def _laid_out(overlays: Overlays, width: int, on: Drawing) -> Legend:
-    """Return the legend, so wide [px]; with names alone where that is 0."""
+    """Return the legend, so wide [px] or as its rows need; with names alone where that is 0."""
     rows, remarks = _rows(overlays)
     pad, sample_length = round(0.7 * on.size), 2.4 * on.size
     label, value = TextStyle(on.size - 1, on.theme.text), TextStyle(on.size - 1, on.theme.faint)
@@ -306,6 +306,10 @@ def _laid_out(overlays: Overlays, width: int, on: Drawing) -> Legend:
     inset, y = round(pad + sample_length + 0.6 * on.size), pad
     texts: list[tuple[str, tuple[int, int], TextStyle, Align]] = []
     if width:
+        widths = [
+            sum(on.canvas.text_size(words, label)[0] for words in (name, scale)) for _, name, scale in rows
+        ]
+        width = max(width, inset + max(widths) + on.size + pad)
         kept = "scale, kept" if overlays.keeps_scales else "scale"
         texts.append((kept, (width - pad, y + heights[title] - heights[small]), small, "right"))
         texts.append(("Arrows", (pad, y), title, "left"))
