@@ -298,3 +298,17 @@ def test_the_words_of_a_row_of_the_legend_lie_apart_in_german() -> None:
     (left, y), width = said["Net force"]
     (right, same), length = said["after your prediction"]
     assert y == same and left + width < right - length
+
+
+def test_the_legend_has_the_scale_of_the_forces_on_the_selection() -> None:
+    """They have a scale of their own: a weight of 30 N stood beside "1 m = 50 N" and was 1.5 m long."""
+    canvas = MeasuringCanvas((1280, 720))
+    desk = Desk(empty_world(), canvas)
+    body = circle(desk.world, (0.0, 0.0), radius=0.5)
+    desk.key("v")
+    desk.frames(3)
+    assert "Forces on the selection" not in [words for words, _ in canvas.words]
+    desk.window.selection.take(body)
+    desk.frames(3)
+    words = [words for words, _ in canvas.words]
+    assert words[words.index("Forces on the selection") + 1] == desk.window.overlays.body_force.words

@@ -115,6 +115,8 @@ class Overlays:
         Whether the scales of arrows stay as they are.
     awaits_prediction : bool
         Whether forces and impulses are left out: a lesson's reader is to say first what will happen.
+    shows_body_forces : bool
+        Whether the forces on the selection are drawn one by one.
     reach : float
         The wanted length of the strongest arrow [m], chosen when a world is shown or an overlay turned on.
     velocity, force, impact, rest : Gauge
@@ -134,6 +136,7 @@ class Overlays:
     def __init__(self) -> None:
         self.arrows = self.impulses = self.keeps_scales = False
         self.centres = self.momenta = self.parts = self.awaits_prediction = False
+        self.shows_body_forces = False
         self.reach = 1.0
         self.velocity, self.force = Gauge("m/s"), Gauge("N")
         self.impact, self.rest = Gauge("N s"), Gauge("N s")
@@ -255,7 +258,9 @@ def _rows(overlays: Overlays) -> tuple[list[Row], list[str]]:
                 "direction only",
             ),
         ]
-        if not overlays.awaits_prediction:
+        if overlays.shows_body_forces:
+            rows.insert(2, (Sample(arrows.BODY_FORCE), arrows.BODY_FORCE.name, overlays.body_force.words))
+        elif not overlays.awaits_prediction:
             remarks.append("Select a body to see each of the forces on it.")
     if overlays.momenta:
         rows.append((Sample(arrows.MOMENTUM), arrows.MOMENTUM.name, overlays.momentum.words))
