@@ -99,6 +99,19 @@ def test_every_row_of_the_account_has_a_name_and_every_name_a_row() -> None:
     assert sorted({**MOMENTUM_ACCOUNTS, **ENERGY_ACCOUNTS}.values()) == list(range(rows.CAUSES))
 
 
+def test_an_edit_before_the_first_step_is_an_edit_to_an_audit_that_has_begun() -> None:
+    """It was an error of the method: accounts begin with the first step."""
+    world = load_scene("drop")
+    audit = Audit(world)
+    world.component("ball", Velocity).linear = (3.0, 0.0)
+    world.run(seconds=0.1)
+    audit.sample(world)
+    assert audit.account.energy["edits"] == pytest.approx(0.5 * 3.0**2 - 0.5 * 1.0**2)
+    assert audit.account.momentum["edits"] == Vector2(2.0, 0.0)
+    check_sums(audit.account)
+    assert audit.error < 1e-12
+
+
 # ---- sums --------------------------------------------------------------------------------------------------
 
 

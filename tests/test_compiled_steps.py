@@ -10,9 +10,9 @@ import pytest
 from desk import bits
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from kept_contacts import kept_contacts
 
 from physicslab.components import Drag, Mass, Name, Transform, Velocity
-from physicslab.contacts.memory import export_contacts
 from physicslab.diagnostics.energy import measure_account
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.files.scene import load_scene
@@ -99,7 +99,7 @@ def figures(world: World) -> tuple[object, ...]:
         contacts.impulse_dt,
         contacts.max_penetration,
     )
-    return (*counts, *near, export_contacts(contacts), world.bodies.force.tobytes(), calls)
+    return (*counts, *near, kept_contacts(contacts), world.bodies.force.tobytes(), calls)
 
 
 def assert_alike(stepped: World, ran: World) -> None:

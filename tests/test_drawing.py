@@ -29,7 +29,7 @@ from physicslab.components import (
 from physicslab.ecs.quantity_text import InvalidText
 from physicslab.ecs.vector import Vector2
 from physicslab.prefabs import box, circle
-from physicslab.view.controls import drawing, measure, polygons
+from physicslab.view.controls import measure, polygons, preview
 from physicslab.view.controls.joining import attachments
 from physicslab.view.controls.tools import DIGITS, DRAWING, TOOLS, key_of
 from physicslab.view.window.sketch import Grip
@@ -66,7 +66,7 @@ def only(world: World, kind: type) -> Any:
 
 
 def words(desk: Desk) -> str:
-    return drawing.reading(desk.world, DRAWING[desk.window.tool].draws, desk.window)  # type: ignore[arg-type]
+    return preview.reading(desk.world, DRAWING[desk.window.tool].draws, desk.window)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(
@@ -430,9 +430,9 @@ def test_what_is_drawn_has_a_ghost_or_a_line_and_is_named(desk: Desk, tool: str)
         desk.move(*place)
         desk.frames()
     if drawn.is_open:
-        assert drawing.ghost(desk.world, drawn, desk.window) is None and words(desk) == drawn.prompts[0]
+        assert preview.ghost(desk.world, drawn, desk.window) is None and words(desk) == drawn.prompts[0]
     elif drawn.build is not None:
-        shown = drawing.ghost(desk.world, drawn, desk.window)
+        shown = preview.ghost(desk.world, drawn, desk.window)
         assert shown is not None and shown[1] and (len(shown[0].place) or drawn.name == "binary")
     else:
         assert words(desk) == drawn.prompts[0]

@@ -515,6 +515,23 @@ def test_a_ball_falls_on_one_that_rests_and_wakes_it() -> None:
     assert abs(world.component(lower, Transform).position.y - 0.5) < 2e-3
 
 
+@pytest.mark.parametrize("between", [1, 3])
+def test_what_is_light_between_a_wall_and_what_is_heavy_stops_it_in_few_impacts(between: int) -> None:
+    """It took ten million, and 12 s: by each the heavy one lost the share of the light mass."""
+    world = laboratory()
+    box(world, (-1.0, 0.0), width=1.0, height=3.0, static=True, restitution=1.0)
+    for n in range(between):
+        disc(world, 1.2 * n, r=0.4, e=0.94)
+    heavy = disc(world, 1.2 * between + 0.5, -1.0, mass=6523.0, e=0.94)
+    world.run(seconds=6.0)
+    account = measure_account(world)
+    assert world.collisions < 20_000
+    assert abs(speed(world, heavy)) < 1e-12
+    assert account.energy["impacts"] == pytest.approx(-0.5 * 6523.0, rel=1e-12)
+    assert account.momentum["numerical"].magnitude < 1e-9
+    assert measure_energy(world).kinetic < 1e-9
+
+
 def test_a_crowd_between_inelastic_walls_ends() -> None:
     # Inelastic collapse: infinitely many impacts in a finite time, which must not hang.
     world = laboratory()

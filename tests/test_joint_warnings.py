@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from physicslab import World, load_scene, save_scene
-from physicslab.components import Mass, Pin, Rod, Shape, Slot, Transform, Velocity, Weld
+from physicslab.components import Mass, Pin, Rod, Shape, Slot, Spring, Transform, Velocity, Weld
 from physicslab.diagnostics.energy import measure_account, measure_energy
 from physicslab.diagnostics.joints import joint_states
 from physicslab.diagnostics.warnings import find_warnings
@@ -107,6 +107,18 @@ def test_a_rod_without_length_is_told_to_have_no_direction() -> None:
     world = world_with((Rod, {"a": 1, "anchor_b": (0.0, 1.0), "length": 1e-300}))
     world.step()
     assert any(one.startswith("joint 1: has both ends in one place") for one in told(world))
+
+
+def test_a_rod_or_a_spring_between_two_bodies_in_one_place_is_told_to_have_no_direction() -> None:
+    """A rod alone was said to contradict other joints, and a spring nothing."""
+    words = "joint 1: has both ends in one place, where a distance has no direction; places apart would help"
+    for kind, name in ((Rod, "length"), (Spring, "rest_length")):
+        fields = {"a": 1, "b": 2, name: 1.0}
+        world = world_with((kind, fields), other=(Transform(), Velocity(), Mass(1.0)))
+        world.step()
+        assert told(world) == [words]
+    world.component("joint 1", Spring).rest_length = 0.0
+    assert not told(world)
 
 
 def test_a_straight_chain_at_the_origin_is_not_far_away() -> None:

@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from kept_contacts import kept_contacts
 
 from physicslab.components import Mass, Material, Shape, Transform, Velocity
-from physicslab.contacts.memory import export_contacts, restore_contacts
+from physicslab.contacts.memory import restore_contacts
 from physicslab.contacts.report import contact_between
 from physicslab.diagnostics.energy import measure_energy, measure_momentum
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
@@ -392,7 +393,7 @@ def test_what_the_solver_keeps_survives_export() -> None:
             Mass(world.component(entity, Mass).mass), Shape(shape.kind, shape.radius, shape.width,
             shape.height), Material(material.restitution, material.friction),
         )  # fmt: skip
-    restore_contacts(again.contacts, export_contacts(world.contacts))
+    restore_contacts(again.contacts, kept_contacts(world.contacts))
     for _ in range(120):
         world.step()
         again.step()

@@ -11,10 +11,10 @@ import pytest
 from desk import bits
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from kept_contacts import kept_contacts
 
 from physicslab.components import Drag, Held, Mass, Material, Rod, Shape, Spring, Thrust, Transform, Velocity
 from physicslab.contacts.islands import export_rests, wake
-from physicslab.contacts.memory import export_contacts
 from physicslab.contacts.report import contact_between, list_contacts
 from physicslab.diagnostics.energy import measure_account, measure_energy, measure_momentum
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
@@ -598,7 +598,7 @@ def test_runs_steps_and_files_agree_while_bodies_sleep_and_wake(
         circle(world, (late[1], 5.0), radius=0.5 * late[3], velocity=(late[5], 0.0), friction=late[7])
         world.run(steps=60)
     assert bits(stepped) == bits(ran)
-    assert export_contacts(stepped.contacts) == export_contacts(ran.contacts)
+    assert kept_contacts(stepped.contacts) == kept_contacts(ran.contacts)
     assert export_rests(stepped) == export_rests(ran)
     again = read_scene(json.loads(json_text(write_scene(ran))))
     for world in (again, ran):

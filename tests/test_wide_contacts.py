@@ -6,16 +6,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from desk import bits
+from kept_contacts import kept_contacts
 
 from physicslab.components import Mass, Material, Shape, Transform, Velocity
 from physicslab.contacts import near_pairs
-from physicslab.contacts.arguments import do_stage, motion_of, near_in
-from physicslab.contacts.memory import export_contacts, restore_contacts
+from physicslab.contacts.arguments import do_stage, near_in
+from physicslab.contacts.memory import restore_contacts
 from physicslab.diagnostics.energy import measure_energy, measure_momentum
 from physicslab.ecs.config import PhysicsConfig
 from physicslab.files.scene import read_scene, write_scene
 from physicslab.kernels import near_counts
-from physicslab.kernels.arguments import Motion
 from physicslab.kernels.solver import soft
 from physicslab.kernels.wide import restore_slots
 from physicslab.kernels.wide_layout import MASS_A, MASS_B, WIDE
@@ -139,10 +139,11 @@ def test_eight_at_a_time_come_to_what_one_by_one_do(name: str) -> None:
     ]
     h = contacts.impulse_dt = 1.0 / 240.0
     world.simulation = replace(world.simulation, iterations=1)
-    ends = []
+    velocity["linear"][bodies.inverse_mass > 0.0] -= (0.0, 9.81 * h)
+    world.has_forces = world.uniform_forces = True
+    ends, begin = [], (velocity["linear"].copy(), velocity["angular"].copy())
     for in_blocks in (True, False):
-        linear, angular = velocity["linear"].copy(), velocity["angular"].copy()
-        linear[bodies.inverse_mass > 0.0] -= (0.0, 9.81 * h)
+        velocity["linear"][:], velocity["angular"][:] = begin
         counts = contacts.counts.copy()
         counts[near_counts.ACTIVE] = counts[near_counts.LEFT] = 0 if in_blocks else len(order)
         if not in_blocks:
@@ -152,14 +153,9 @@ def test_eight_at_a_time_come_to_what_one_by_one_do(name: str) -> None:
         near = near_in(world)
         points, touching = contacts.points.copy(), np.array(order, np.int64)
         near = (counts, near[1], points, near[3], touching, discs, boxes, *near[7:])
-        motion = Motion(*motion_of(world))._replace(linear=linear, angular=angular)
         inverse = (bodies.inverse_mass, bodies.inverse_inertia)
-        acting = (bodies.pull, True, bodies.unkicked, True)
-        do_stage(
-            world, soft.SOLVE, h, softness=(0.17, 7.0, 1.5), near=near,
-            motion=tuple(motion), inverse=inverse, acting=acting,
-        )  # fmt: skip
-        ends.append((linear, angular))
+        do_stage(world, soft.SOLVE, h, softness=(0.17, 7.0, 1.5), near=near, inverse=inverse)
+        ends.append((velocity["linear"].copy(), velocity["angular"].copy()))
     assert ends[0][0] == pytest.approx(ends[1][0], rel=1e-9, abs=1e-12)
     assert ends[0][1] == pytest.approx(ends[1][1], rel=1e-9, abs=1e-11)
 
@@ -346,7 +342,7 @@ def test_slots_that_a_file_makes_up_stay_scalar() -> None:
     """Two contacts in one slot, boxes in a slot of discs, a body twice in a block, a slot far out."""
     for spoiled in ("one slot", "wrong kind", "one block", "far out"):
         world = settled_boxes()
-        rows = [row for row in export_contacts(world.contacts) if len(row) > 20]
+        rows = [row for row in kept_contacts(world.contacts) if len(row) > 20]
         world.contacts.clear()
         slots: dict[str, list[tuple[float, float]]] = {
             "one slot": [(1, 0) for _ in rows],

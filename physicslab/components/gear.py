@@ -1,11 +1,13 @@
 """A gear, which couples two joints."""
 
+from collections.abc import Callable, Mapping
+
 from physicslab.components import joint_ends as ends
 from physicslab.ecs.component import Component, Derived, Entity, InvalidValue, Number, component, field
 
 COUPLED = "an entity with a Pin or a Slot, and not both"
 """The allowed ends."""
-OTHER_JOINT = "another entity than first"
+_OTHER_JOINT = "another entity than first"
 """The allowed ``second``."""
 
 
@@ -30,3 +32,20 @@ class Gear(Component):
                 raise InvalidValue("Gear", name, None, COUPLED)
         if self.ratio == 0.0:
             raise InvalidValue("Gear", "ratio", self.ratio, "a finite number other than 0")
+
+
+def why_not_coupled(
+    first: int, second: int, joints: Callable[[int], int], known: Mapping[frozenset[int], str]
+) -> tuple[str, int, str] | None:
+    """Return which field keeps two entities from being coupled, which of them it names, and what it must be.
+
+    ``joints`` returns how many of a Pin and a Slot an entity has; ``known`` are the gears so far, by the
+    entities that they couple, with what to call each. ``None`` if nothing does.
+    """
+    for name, end in (("first", first), ("second", second)):
+        if joints(end) != 1:
+            return name, end, COUPLED
+    if first == second:
+        return "second", second, _OTHER_JOINT
+    other = known.get(frozenset((first, second)))
+    return None if other is None else ("second", second, f"another joint than {other} couples")

@@ -90,8 +90,7 @@ _NO_VECTORS = np.zeros((0, 2))
 
 def do_stage(
     state: State, part: int, h: float, *, softness: Plain[Softness] = (0.0, 0.0, 0.0), first: bool = False,
-    near: Plain[Near] | None = None, motion: Plain[Motion] | None = None,
-    inverse: Plain[Inverse] | None = None, acting: ActingTuple | None = None,
+    near: Plain[Near] | None = None, inverse: Plain[Inverse] | None = None,
 ) -> int:  # fmt: skip
     """Do one part of a substep, as the loop of whole steps does it; return how many impacts there were.
 
@@ -107,12 +106,11 @@ def do_stage(
         The contact spring.
     first : bool
         Whether it is in the first substep of a step.
-    near, motion, inverse, acting : tuples of arrays, optional
-        Bodies and pairs that take part.
+    near, inverse : tuples of arrays, optional
+        Pairs that take part, and the inverse masses of bodies.
     """
     state.compile((soft.advance,))
     near, inverse, contacts = near or near_in(state), inverse or inverse_in(state), state.contacts
-    motion = motion or motion_of(state)
     none = np.zeros(0, np.bool_)
     course = np.array([part]), np.array([[1.0], [0.0], [0.0]]), *state.window, -1.0, True
     loaded = int(state.bodies.unequal and state.has_forces)
@@ -125,8 +123,8 @@ def do_stage(
     rows = np.zeros(0, np.int64)
     sleepers = False, 0, none, _NOTHING, _NOTHING, none, none, rows, _NO_VECTORS, False
     *_, impacts, _, contacts.impulse_dt = soft.advance(
-        1, last, 0, plan, course, -1, motion, _NOTHING, shapes_of(state), materials_of(state), inverse,
-        state.bodies.sub_integrated, acting or acting_in(state), gravity, packed, (_NOTHING, rows), sleepers,
+        1, last, 0, plan, course, -1, motion_of(state), _NOTHING, shapes_of(state), materials_of(state),
+        inverse, state.bodies.sub_integrated, acting_in(state), gravity, packed, (_NOTHING, rows), sleepers,
         (0.0, 0.0), np.zeros((8, 0)), bounds_of(state), near, joints_in(state), contacts.opened, softness,
         contacts.impulse_dt, contacts.step_log, np.zeros(soft.COSTS, np.int64),
         NOTHING_SAMPLED,

@@ -57,14 +57,8 @@ def _overlaps_deeply(contacts: Contacts, p: int) -> bool:
     return bool((separation < -DEEP * manifold["size"]).any())
 
 
-def export_contacts(contacts: Contacts) -> list[list[float]]:
-    """Return all :func:`kept_rows`."""
-    contacts.sync()
-    return [row for row in kept_rows(contacts) if row is not None]
-
-
 def restore_contacts(contacts: Contacts, rows: Sequence[Sequence[float]]) -> None:
-    """Restore what :func:`export_contacts` returned.
+    """Restore what :func:`kept_rows` yielded of pairs of which something is kept.
 
     Raises
     ------

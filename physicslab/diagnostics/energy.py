@@ -102,6 +102,11 @@ class Accounts:
         """Return the accounts of what happened after an earlier moment, at which they were ``begin``."""
         energy, momentum = _given(self.energy, begin.energy), _given(self.momentum, begin.momentum)
         angular = _given(self.angular_momentum, begin.angular_momentum)
+        # Accounts begin with the first step of a world: what was changed before it is an edit too.
+        edited = [after - before for after, before in zip(self.start, begin.start, strict=True)]
+        energy["edits"] += edited[0]
+        momentum["edits"] += Vector2(edited[1], edited[2])
+        angular["edits"] += edited[3]
         now, start = self.now, begin.now
         energy["numerical"] = now.energy - start.energy - sum(energy.values())
         change = Vector2(now.px - start.px, now.py - start.py)

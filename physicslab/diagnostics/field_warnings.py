@@ -1,4 +1,4 @@
-"""Warnings of fields: bodies in one place, where a force has no direction, lost thrust and idle charges."""
+"""Warnings of forces: what has no direction in one place, lost thrust and idle charges."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -12,6 +12,7 @@ from physicslab.ecs.sentences import sentence
 from physicslab.systems.coulomb import CoulombSystem
 from physicslab.systems.gravity import GravitySystem
 from physicslab.systems.molecule import MoleculeSystem
+from physicslab.systems.spring import SpringSystem
 from physicslab.world import World
 
 _RESOLVED, _SQUARED = 1e-15, 1e-150
@@ -23,8 +24,12 @@ _SLOPE = 0.7548776662466927
 
 
 def field_warnings(world: World) -> Iterator[ModelWarning]:
-    """Yield two bodies in one place that act on each other, a push on what cannot move, an idle charge."""
+    """Yield what acts on each other in one place, a push on what cannot move, an idle charge."""
     yield from _coincident(world)
+    springs = world.schedule.find(SpringSystem)
+    for row in () if springs is None else springs.directionless(world)[:1]:
+        spring = int(world.entity_index.entities[row])
+        yield ModelWarning.about(world, spring, sentence("ends_in_one_place"), setting=sentence("apart"))
     thrust = world.batch(Thrust, Transform)
     lost = thrust.entities[world.bodies.inverse_mass[thrust.rows] == 0.0]
     lost = [entity for entity in lost.tolist() if not world.has(entity, Held)]

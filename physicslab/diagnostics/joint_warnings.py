@@ -19,6 +19,7 @@ from physicslab.state.joint_figures import (
     measured_terms,
 )
 from physicslab.state.joint_rows import Measure, Role
+from physicslab.state.joints import Joint
 from physicslab.stepping.plan import WITHOUT_END
 from physicslab.stepping.soft import Soft
 from physicslab.world import World
@@ -55,6 +56,10 @@ def joint_warnings(world: World) -> Iterator[ModelWarning]:
     figures, dependent = figures_of(world), _dependent(world) & _acts(world)
     worst = int(np.argmax(np.where(moves, figures.stretch / figures.size, -1.0)))
     stretch, limit = float(figures.stretch[worst]), STRETCH_LIMIT * float(figures.size[worst])
+    if stretch > limit and _has_no_direction(world, joints[worst]):
+        what, where = sentence("ends_in_one_place"), sentence("apart")
+        yield ModelWarning.about(world, joints[worst].entity, what, setting=where)
+        return
     told = stretch > limit and (bool(dependent.any()) or _contradict(world, limit))
     if stretch > limit and (told or isinstance(world.stepper, Soft)):  # others close what can be closed
         what = sentence("contradicts") if told else sentence("does_not_hold")
@@ -68,7 +73,7 @@ def joint_warnings(world: World) -> Iterator[ModelWarning]:
     elif dependent.any():
         first = int(np.argmax(dependent))
         joint = joints[int(world.joints.owner[first])]
-        if joint.kind is Rod and not measured_terms(world)[first, AX : BY + 1].any():
+        if _has_no_direction(world, joint):
             what = sentence("ends_in_one_place")
             yield ModelWarning.about(world, joint.entity, what, setting=sentence("a_pin"))
             return
@@ -82,6 +87,11 @@ def joint_warnings(world: World) -> Iterator[ModelWarning]:
         yield ModelWarning.about(
             world, joint.entity, what, count, limit=0.0, setting=sentence("one_joint_less")
         )
+
+
+def _has_no_direction(world: World, joint: Joint) -> bool:
+    """Whether a joint is a rod whose ends are in one place."""
+    return joint.kind is Rod and not measured_terms(world)[joint.first, AX : BY + 1].any()
 
 
 def _substeps(world: World, size: float) -> int:

@@ -11,8 +11,9 @@ from typing import Any, Concatenate, Literal
 import numpy as np
 
 from physicslab.ecs.interned import Interned
-from physicslab.ecs.quantity_text import InvalidText, evaluate_as, is_written
+from physicslab.ecs.quantity_text import InvalidText
 from physicslab.ecs.text import code_of, has_width, is_line
+from physicslab.ecs.value_text import evaluate_as, is_written
 from physicslab.ecs.vector import Vector2
 
 Kind = Literal["number", "whole", "vector", "flag", "entity", "choice", "text", "points", "box"]

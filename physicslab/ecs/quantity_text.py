@@ -5,12 +5,11 @@ import math
 import operator
 import re
 import warnings
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from typing import Any, Protocol
+from typing import Protocol
 
 from physicslab.ecs.text import printable, shortened
-from physicslab.ecs.vector import Vector2
 
 type Dimension = tuple[int, ...]
 """Powers of metre, kilogram, second and coulomb; an angle has none."""
@@ -88,10 +87,6 @@ _UNCLEAR = (
 _SPACED = re.compile(r"(?<=[A-Za-zµ°π0-9)])[ ·]+(?=[A-Za-zµ°π(])")
 _QUOTED = re.compile(r'"([^"]*)"')
 """A name that is no plain word, as ``"box 2"`` in ``"box 2".y``."""
-_ROW = re.compile(r"\s*\[(?P<parts>[^][]*)\](?P<unit>[^][]*)")
-_ROWS = {"vector": (2, "pair"), "box": (4, "row of four numbers")}
-"""Kinds of fields that are rows of numbers: how many, and what that is called."""
-_POINTS = re.compile(r"\s*\[(?P<points>\s*(?:\[[^][]*\]\s*,?\s*)*)\](?P<unit>[^][]*)")
 
 
 def evaluate(text: str, unit: str = "1") -> float:
@@ -128,7 +123,7 @@ def evaluate(text: str, unit: str = "1") -> float:
 
 def in_unit(found: Quantity, unit: str, text: str) -> float:
     """Return the value in an SI unit of what a text stands for, as :func:`evaluate` does."""
-    shown = _shown(text)
+    shown = shown_in(text)
     wanted = Expression(unit).value() if unit not in ("", "1") else Quantity(1.0)
     if not found.has_unit:
         value = found.value
@@ -156,7 +151,7 @@ def factor_of(unit: str) -> float:
     """
     factor = Expression(unit).value().value
     if not factor > 0.0:
-        raise InvalidText(f"'{_shown(unit)}' is no unit: must be above zero")
+        raise InvalidText(f"'{shown_in(unit)}' is no unit: must be above zero")
     return factor
 
 
@@ -200,9 +195,9 @@ class Expression:
                 raise OverflowError
             return found
         except (OverflowError, ZeroDivisionError):
-            raise Undefined(f"'{_shown(self.text)}' is not finite") from None
+            raise Undefined(f"'{shown_in(self.text)}' is not finite") from None
         except ValueError as error:
-            no_number = Undefined(f"'{_shown(self.text)}' is no number")
+            no_number = Undefined(f"'{shown_in(self.text)}' is no number")
             raise error if isinstance(error, InvalidText) else no_number from None
 
     def names(self) -> Iterator[str]:
@@ -219,7 +214,7 @@ class Expression:
                     yield name
 
     def _no_number(self) -> InvalidText:
-        return InvalidText(f"'{_shown(self.text)}' is no number")
+        return InvalidText(f"'{shown_in(self.text)}' is no number")
 
     def _value(self, node: ast.expr, scope: Scope | None) -> Quantity:
         match node:
@@ -231,7 +226,9 @@ class Expression:
                 inner = self._value(operand, scope)
                 return replace(inner, value=-inner.value if isinstance(sign, ast.USub) else inner.value)
             case ast.BinOp(left=left, op=kind, right=right):
-                return _combined(kind, self._value(left, scope), self._value(right, scope), _shown(self.text))
+                return _combined(
+                    kind, self._value(left, scope), self._value(right, scope), shown_in(self.text)
+                )
             case ast.Call(func=ast.Name(id=name), args=arguments, keywords=[]):
                 return self._called(name, arguments, scope)
         raise self._no_number()
@@ -264,7 +261,7 @@ class Expression:
         if "." in name and found is None:
             raise self._no_number()
         if name.lower() in ("inf", "infinity", "nan"):
-            raise InvalidText(f"'{_shown(self.text)}' is not finite")
+            raise InvalidText(f"'{shown_in(self.text)}' is not finite")
         if found is None:
             raise InvalidText(f"'{name}' is no unit that is known: m, kg, s, km/h, deg, N, J, ...")
         return found
@@ -293,88 +290,17 @@ def same_dimension(first: Quantity, second: Quantity, text: str) -> None:
     """Refuse two quantities that cannot be compared; a pure number is in the unit of the other."""
     if first.has_unit and second.has_unit and first.dimension != second.dimension:
         words = f"{in_words(first.dimension)} and {in_words(second.dimension)}"
-        raise InvalidText(f"'{_shown(text)}': {words} cannot be compared")
+        raise InvalidText(f"'{shown_in(text)}': {words} cannot be compared")
 
 
-def _evaluate_row(text: str, unit: str, count: int, noun: str) -> tuple[float, ...]:
-    """Return so many numbers in an SI unit; a unit behind the brackets is that of all."""
-    if (row := _ROW.fullmatch(text)) is None or row["parts"].count(",") != count - 1:
-        raise InvalidText(f"'{_shown(text)}' is no {noun}")
-    own = row["unit"].strip()
-    return tuple(evaluate(f"({one.strip()}) {own}" if own else one, unit) for one in row["parts"].split(","))
-
-
-def evaluate_points(text: str, unit: str = "1") -> list[tuple[float, float]]:
-    """Return a list of pairs of numbers in an SI unit; a unit behind the brackets is that of all.
-
-    >>> evaluate_points("[[0, 0], [3, 0], [0, 1/2]] cm", "m")
-    [(0.0, 0.0), (0.03, 0.0), (0.0, 0.005)]
-    """
-    points = _POINTS.fullmatch(text)
-    if points is None:
-        raise InvalidText(f"'{_shown(text)}' is no list of points [[x, y], ...]")
-    own = points["unit"]
-    found = re.findall(r"\[[^][]*\]", points["points"])
-    return [(x, y) for x, y in (_evaluate_row(one + own, unit, *_ROWS["vector"]) for one in found)]
-
-
-def is_written(value: object) -> bool:
-    """Whether a value is a text, or a list or tuple with one in it."""
-    parts = value if isinstance(value, list | tuple) else (value,)
-    return any(isinstance(part, str) for part in parts)
-
-
-def evaluate_as(kind: str, value: Any, unit: str = "1") -> Any:
-    """Return what is written as a kind of field takes it, in an SI unit.
-
-    Parameters
-    ----------
-    kind : str
-        ``"number"``, ``"whole"``, ``"vector"``, ``"points"`` or ``"box"``, four numbers.
-    value : str, number or sequence
-        What :func:`evaluate` and :func:`evaluate_points` take, or a row in brackets; a list of texts and
-        numbers too.
-    unit : str
-        Unit of a number that has none of its own.
-
-    Raises
-    ------
-    InvalidText
-        If it cannot be read, or has another dimension.
-
-    Examples
-    --------
-    >>> evaluate_as("vector", ("20 cm", 1), "m"), evaluate_as("whole", "2*8")
-    ((0.2, 1), 16)
-    >>> evaluate_as("vector", "[1 + 1, 3] cm", "m"), evaluate_as("vector", "[20 mm, 0.5]", "m")
-    ((0.02, 0.03), (0.02, 0.5))
-    """
-    if kind == "points":
-        return evaluate_points(value, unit) if isinstance(value, str) else value
-    if kind in _ROWS:
-        if isinstance(value, str):
-            return _evaluate_row(value, unit, *_ROWS[kind])
-        return tuple(evaluate(part, unit) if isinstance(part, str) else part for part in value)
-    number = evaluate(value, unit) if isinstance(value, str) else value
-    return int(number) if kind == "whole" and isinstance(number, float) and number.is_integer() else number
-
-
-def points_text(points: Iterable[Vector2]) -> str:
-    """Return points as :func:`evaluate_points` takes them, to all figures.
-
-    >>> points_text([Vector2(0.5, -1.0), Vector2(0.1, 2.0)])
-    '[[0.5, -1], [0.1, 2]]'
-    """
-    return repr([[int(x) if x == round(x) and abs(x) < 1e15 else x for x in point] for point in points])
-
-
-def _shown(text: str) -> str:
+def shown_in(text: str) -> str:
+    """Return a text as messages show it."""
     return shortened(printable(text.strip()), _SHOWN_LIMIT)
 
 
 def _parsed(text: str) -> ast.expr:
     """Return the tree of an expression, with the signs of Python in place of those of print."""
-    shown = _shown(text)
+    shown = shown_in(text)
     if not shown:
         raise InvalidText("a number is needed")
     if len(text) > _DEPTH_LIMIT:

@@ -6,7 +6,8 @@ from dataclasses import replace
 from typing import Any
 
 from physicslab.ecs.component import Component, Field, InvalidValue
-from physicslab.ecs.quantity_text import InvalidText, evaluate_as
+from physicslab.ecs.quantity_text import InvalidText
+from physicslab.ecs.value_text import evaluate_as
 from physicslab.files.checks import SceneError, shown
 from physicslab.files.places import (
     SECTIONS,

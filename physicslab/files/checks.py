@@ -9,8 +9,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from physicslab.ecs.fields import MEASURED, Field
-from physicslab.ecs.quantity_text import is_written
 from physicslab.ecs.text import SHORT, has_width, is_line, printable, shortened, suggestion
+from physicslab.ecs.value_text import is_written
 
 _BREAKS = dict.fromkeys(map(ord, "\n\t"), " ")
 

@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from physicslab.components import Gear, Held, Mass, Medium, Pin, Shape, Slot, Spring, Transform, Velocity
-from physicslab.components.gear import COUPLED, OTHER_JOINT
+from physicslab.components.gear import COUPLED, why_not_coupled
 from physicslab.components.joint_ends import key_of, why_not_joined
 from physicslab.components.name import why_no_id
 from physicslab.components.shape import STAYS
@@ -59,7 +59,7 @@ def check_entities(
 ) -> list[tuple[str | None, list[Component]]]:
     """Return each entity's id and components, in order; they refer to each other by place, from 1."""
     made: list[tuple[str | None, list[Component]]] = []
-    joined: dict[type[Any], dict[tuple[Any, ...], str]] = {}
+    joined: dict[type[Any], dict[Any, str]] = {}
     expected = {name: _expected(kind) for name, kind in COMPONENTS.items() if kind not in UNSAVED}
     known = ("id", *expected)
     for number, entity in enumerate(entities, start=1):
@@ -242,7 +242,7 @@ def _check_references(component: Component, entities: Sequence[Mapping[str, Any]
 
 def _check_joint(
     joint: Any, number: int, entities: Sequence[Mapping[str, Any]], where: str,
-    joined: dict[tuple[Any, ...], str],
+    joined: dict[Any, str],
 ) -> None:  # fmt: skip
     """Refuse a joint whose ends are not two points, or are those of another of its kind."""
     kind = type(joint).__name__
@@ -260,20 +260,18 @@ def _check_joint(
 
 def _check_gear(
     gear: Gear, number: int, entities: Sequence[Mapping[str, Any]], where: str,
-    joined: dict[tuple[Any, ...], str],
+    joined: dict[Any, str],
 ) -> None:  # fmt: skip
     """Refuse a gear that couples no two joints, or those of another."""
     ends = gear.first or 0, gear.second or 0
-    for name, end in zip(("first", "second"), ends, strict=True):
-        if (Pin.__name__ in entities[end - 1]) == (Slot.__name__ in entities[end - 1]):
-            raise checks.refusal(f"{where}: Gear.{name}", entities[end - 1].get("id"), f"the id of {COUPLED}")
-    if ends[0] == ends[1]:
-        raise checks.refusal(f"{where}: Gear.second", entities[ends[1] - 1].get("id"), OTHER_JOINT)
-    label = str(entities[number - 1].get("id", f"entity {number}"))
-    other = joined.setdefault(tuple(sorted(ends)), label)
-    if other is not label:
-        allowed = f"another joint than {other} couples"
-        raise checks.refusal(f"{where}: Gear.second", entities[ends[1] - 1].get("id"), allowed)
+    refused = why_not_coupled(
+        *ends, lambda end: sum(kind.__name__ in entities[end - 1] for kind in (Pin, Slot)), joined
+    )
+    if refused is not None:
+        name, end, allowed = refused
+        allowed = f"the id of {COUPLED}" if allowed == COUPLED else allowed
+        raise checks.refusal(f"{where}: Gear.{name}", entities[end - 1].get("id"), allowed)
+    joined[frozenset(ends)] = str(entities[number - 1].get("id", f"entity {number}"))
 
 
 def _check_ends(spring: Spring, number: int, entities: Sequence[Mapping[str, Any]], where: str) -> None:

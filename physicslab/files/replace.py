@@ -2,12 +2,13 @@
 
 import contextlib
 import glob
+import itertools
 import os
 import secrets
 import stat
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -121,6 +122,30 @@ def create_file(path: Path, content: bytes) -> None:
             with open(path, "xb"):
                 pass
             rename_over(fresh, path)
+
+
+def create_first(paths: Iterable[Path], content: bytes) -> Path:
+    """Write a new file under the first of some names that nothing has, and return it.
+
+    Several programs that do so at once under the same names get names of their own.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be written, or every name is taken.
+    """
+    for path in paths:
+        with contextlib.suppress(FileExistsError):
+            create_file(path, content)
+            return path
+    raise FileExistsError("every name is taken")
+
+
+def with_numbers(path: Path) -> Iterator[Path]:
+    """Yield a path, and then the same with -2, -3 and so on before its ending."""
+    yield path
+    for number in itertools.count(2):
+        yield path.with_stem(f"{path.stem}-{number}")
 
 
 @contextmanager

@@ -17,7 +17,7 @@ from physicslab.files.checks import JsonObject, SceneError
 from physicslab.files.json_text import json_bytes
 from physicslab.files.plain import read_bytes
 from physicslab.files.reader import check_scene, read_scene
-from physicslab.files.replace import create_file, replace_file
+from physicslab.files.replace import create_first, replace_file, with_numbers
 from physicslab.files.writer import write_scene
 from physicslab.scenes import SCENES
 from physicslab.world import World
@@ -231,8 +231,6 @@ def file_stem(name: str) -> str:
 def save_new_scene(world: World, paths: Iterable[Path]) -> Path:
     """Save a world under the first of some names that nothing has, and return it: nothing is overwritten.
 
-    Several programs that save at once under the same names get names of their own.
-
     Parameters
     ----------
     world : World
@@ -247,16 +245,8 @@ def save_new_scene(world: World, paths: Iterable[Path]) -> Path:
     OSError
         If the file cannot be written.
     """
-    content: bytes | None = None
-    for path in paths:
-        if content is None:
-            content = scene_bytes(world, str(path))
-        try:
-            create_file(path, content)
-        except FileExistsError:
-            continue
-        return path
-    raise FileExistsError("every name is taken")
+    first, names = itertools.tee(paths)
+    return create_first(names, scene_bytes(world, str(next(first))))
 
 
 def save_last_good(world: World, name: str, directory: Path) -> Path:
@@ -272,6 +262,5 @@ def save_last_good(world: World, name: str, directory: Path) -> Path:
     OSError
         If the file cannot be written.
     """
-    stem = f"{file_stem(name)}-before-divergence"
-    numbered = (directory / f"{stem}-{number}.json" for number in itertools.count(2))
-    return save_new_scene(world, itertools.chain([directory / f"{stem}.json"], numbered))
+    first = directory / f"{file_stem(name)}-before-divergence.json"
+    return save_new_scene(world, with_numbers(first))

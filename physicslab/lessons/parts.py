@@ -13,6 +13,7 @@ from physicslab.lessons.blocks import Block, Entry
 from physicslab.lessons.lesson import Compare, Explain, Question, Recall, Reply, Run
 from physicslab.lessons.live_run import refuse_long
 from physicslab.lessons.setup import AS_IT_IS, Case, Setup
+from physicslab.world import World
 
 CITED = re.compile(r"\[([a-z]+[0-9]{4}[a-z]?)\]")
 _RATIO = "a share of it, as 0.1 %, or an amount in its unit"
@@ -43,6 +44,7 @@ class PartMaker:
         self._ids = [one["id"] for one in setup.document["entities"] if "id" in one]
         self._runs: list[Run] = []
         self._counts: dict[str, int] = {}
+        self._worlds: dict[tuple[tuple[str, str], ...], World] = {}
         self._makers: dict[str, Callable[[Block], Run | Question | Compare | Explain | Recall]] = {
             "predict": self._question, "check": self._question, "compare": self._compare,
             "explain": self._explain, "recall": self._recall, "run": self._made_run,
@@ -213,7 +215,7 @@ class PartMaker:
         time = block.read(entry, lambda text: in_unit(found.value(self._setup.values()), "s", text))
         if time <= 0.0:
             raise block.refusal(entry, "must be a time above 0 s")
-        block.read(entry, lambda _: refuse_long(time, self._setup.world()))
+        block.read(entry, lambda _: refuse_long(time, self._world(AS_IT_IS)))
         return found
 
     def _condition(self, block: Block, entry: Entry) -> Condition:
@@ -221,8 +223,14 @@ class PartMaker:
 
     def _case(self, block: Block, entry: Entry) -> Case:
         case = block.case(entry)
-        block.read(entry, lambda _: self._setup.world(case))
+        block.read(entry, lambda _: self._world(case))
         return case
+
+    def _world(self, case: Case) -> World:
+        """Return the world of a case, which many parts name."""
+        if case.values not in self._worlds:
+            self._worlds[case.values] = self._setup.world(case)
+        return self._worlds[case.values]
 
     def _open_case(self, block: Block, entry: Entry) -> Case:
         """Return a case that learners can set: of what is open, within its limits."""

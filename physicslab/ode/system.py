@@ -1,8 +1,7 @@
 """The smooth motion of a world as one system of ordinary differential equations."""
 
-import ctypes
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
@@ -18,13 +17,14 @@ from physicslab.kernels.forces.force_calls import add_forces
 from physicslab.kernels.forces.inverse_square import PLAIN_LIMIT
 from physicslab.kernels.joints.layout import FIRST
 from physicslab.kernels.joints.rows import constrain, project, set_going
-from physicslab.ode.budget import BudgetLayout, book_in_python
+from physicslab.ode.budget import BudgetLayout
+from physicslab.ode.python_forces import PythonForces
 from physicslab.ode.steady_turn import turn_steadily
 from physicslab.state.packed import StateLayout, share_steepness, way_and_size
 from physicslab.state.remainders import NO_REMAINDERS, Remainders, coordinate_keys
 from physicslab.state.state import State
 from physicslab.systems.joint_forces import solved_rows
-from physicslab.systems.system import ForceSystem, Stage
+from physicslab.systems.system import ForceSystem
 
 _APART, _PUT = 1e-6, 1e-9
 """Share of the coordinates of bodies by which joints are apart after a step if they cannot be kept; and by
@@ -32,10 +32,6 @@ which they are before one if soft joints or an edit left them so: what methods l
 
 NOTHING_WANTED = np.zeros(0), np.zeros((0, 0)), np.zeros((0, 0))
 """Moments at which the motion is wanted, of which there are none, and room for coordinates and rates."""
-
-_REAL = ctypes.POINTER(ctypes.c_double)
-_WHOLE = ctypes.POINTER(ctypes.c_int64)
-_CALLBACK = ctypes.CFUNCTYPE(None, _REAL, _REAL, ctypes.c_double, _REAL, _REAL, _WHOLE)
 
 
 class OdeSystem:
@@ -137,7 +133,7 @@ class OdeSystem:
         self.tolerance = state.simulation.tolerance
         self.most: int | None = None
         self.wanted = NOTHING_WANTED
-        self._error: BaseException | None = None
+        self._python: PythonForces | None = None
         self._clock = np.zeros(1)
         self._settings = self._look(state)
         self.laws: tuple[Any, ...] | None = None
@@ -348,9 +344,8 @@ class OdeSystem:
 
     def _raise(self) -> None:
         """Raise the error of a force in Python, if there was one."""
-        if self._error is not None:
-            error, self._error = self._error, None
-            raise error
+        if self._python is not None:
+            self._python.raise_error()
 
     def write(self, state: State) -> None:
         """Put places and rates, and the forces of joints with them, into the tables."""
@@ -406,45 +401,8 @@ class OdeSystem:
         self.resistances = np.array(against, np.int64).reshape(-1, 3)
         python = [system for system, force in packed if force is None]
         if python:
-            callback = _CALLBACK(self._caller(state, python, book, size))
-            self._kept.append(callback)
-            rows.append((ctypes.cast(callback, ctypes.c_void_p).value or 0, 0, 0))
+            self._python = PythonForces(state, python, self.layout, book, size, self._write)
+            rows.append((self._python.address, 0, 0))
         rows += last
         self.calls = np.array(rows, np.int64).reshape(-1, 3)
         self.damped_calls = np.array([*rows, *(force.call for force in damping)], np.int64).reshape(-1, 3)
-
-    def _caller(self, state: State, systems: Iterable[ForceSystem], book: BudgetLayout, size: int) -> Any:
-        """Return a C function that lets force systems written in Python act on the world's tables.
-
-        It gets ``size`` numbers of each array.
-        """
-        methods = [(system, getattr(system, type(system).marked()[Stage.FORCE])) for system in systems]
-        layout, bodies = self.layout, state.bodies
-        n, d, clock = 2 * len(layout.moving), layout.moving_count, layout.clock
-
-        def call(q: Any, v: Any, _span: float, force: Any, parameters: Any, indices: Any) -> None:
-            if self._error is not None:
-                return
-            start, state.time = state.time, float(q[clock])
-            try:
-                places, speeds = np.ctypeslib.as_array(q, (size,)), np.ctypeslib.as_array(v, (size,))
-                total = np.ctypeslib.as_array(force, (size,))
-                self._write(state, places, speeds)
-                bodies.force[:] = 0.0
-                bodies.torque[:] = 0.0
-                for system, method in methods:
-                    before = bodies.force.copy(), bodies.torque.copy()
-                    method(state, 0.0)
-                    change = bodies.force - before[0], bodies.torque - before[1]
-                    book_in_python(state, book, system, change, places, speeds, total)
-                # A fixed body stays where it is, be the force on it infinite: no product with zero.
-                pulled = bodies.inverse_mass[layout.moving] > 0.0
-                total[:n] += np.where(pulled[:, None], bodies.force[layout.moving], 0.0).ravel()
-                turned = bodies.inverse_inertia[layout.turning] > 0.0
-                total[n:d] += np.where(turned, bodies.torque[layout.turning], 0.0)
-            except BaseException as error:  # C code cannot be unwound: it is raised when that has returned
-                self._error = error
-            finally:
-                state.time = start
-
-        return call

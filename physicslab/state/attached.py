@@ -40,7 +40,12 @@ def place_of(state: State, entity: int, kind: type[Any], name: str) -> Vector2:
         If there is no such instrument.
     """
     part = state.component(entity, kind)
-    return motion_of_point(state, getattr(part, f"{name}_body"), getattr(part, name))[0]
+    return point_of(state, getattr(part, f"{name}_body"), getattr(part, name))
+
+
+def point_of(state: State, body: int | None, point: Vector2) -> Vector2:
+    """Return where a point in the frame of a body is in the world [m]; without a body it is one of that."""
+    return motion_of_point(state, body, point)[0]
 
 
 def motion_of_point(state: State, body: int | None, point: Vector2) -> tuple[Vector2, Vector2]:

@@ -1,5 +1,6 @@
 """The table of shapes of a world, and the register of kinds as the arrays that it is derived with."""
 
+from collections.abc import Callable
 from functools import lru_cache
 from typing import Any, NamedTuple
 
@@ -10,7 +11,14 @@ from physicslab.components import shape
 from physicslab.components.shape import Kind
 from physicslab.ecs.fields import POINTS
 from physicslab.ecs.table import Table
-from physicslab.kernels.geometry.shapes import MOST_VERTICES, OWN, Shapes, ShapesTuple, SizesTuple
+from physicslab.kernels.geometry.shapes import (
+    MOST_VERTICES,
+    OWN,
+    Shapes,
+    ShapesTuple,
+    SizesTuple,
+    named_shapes,
+)
 from physicslab.state.chain_links import NO_LINKS, line_along, links_before, links_of
 
 _SIZES = tuple(spec.name for spec in shape.Shape.FIELDS if spec.kind == "number")
@@ -116,12 +124,9 @@ def blank_shapes(rows: int) -> ShapesTuple:
     return np.zeros((2, rows), np.int64), np.zeros((6, rows)), REGISTER.pool
 
 
-def with_names(plain: ShapesTuple) -> Shapes:
-    """Return the same table, its columns by name."""
-    cores, lengths, pool = plain
-    return Shapes(
-        cores[0], cores[1], lengths[0], lengths[1], lengths[2], lengths[3], lengths[4], lengths[5], pool
-    )
+_of_kernels: Any = named_shapes
+with_names: Callable[[ShapesTuple], Shapes] = _of_kernels.py_func
+"""Returns the same table, its columns by name."""
 
 
 def sizes_in(table: Table) -> SizesTuple:

@@ -16,7 +16,7 @@ from physicslab.systems.integrate import IntegrateSystem, why_nowhere
 from physicslab.systems.joint import JointSystem
 from physicslab.systems.resolve import ResolveSystem
 from physicslab.systems.schedule import Schedule
-from physicslab.systems.system import AROUND, OF_FRAMES, ForceSystem, Stage
+from physicslab.systems.system import ForceSystem
 
 MAX_BODIES = 32
 """Number of moving bodies above which ``auto`` prefers the contact step."""
@@ -24,8 +24,6 @@ MAX_PAIRS = 20_000
 """Largest number of pairs: every impact searches all of them, which would take too long for more."""
 CONTACT_STEP = (IntegrateSystem, BroadPhaseSystem, ContactSystem, ResolveSystem)
 """The systems of the contact step: what rests, or cannot be solved otherwise, is left to them."""
-_OBSERVING = OF_FRAMES | AROUND | {Stage.IMPACT}
-"""The stages at which a system may observe without changing a ballistic path."""
 _CONTACT_DISTANCE = 0.01
 """Share of the smaller body's size within which bodies count as resting on each other."""
 
@@ -68,7 +66,7 @@ def _why_not_ballistic(state: State, schedule: Schedule) -> str | None:
                 return sentence("attraction") if attracts else sentence("not_uniform", system=system.name)
         elif isinstance(system, JointSystem):
             return sentence("joined")
-        elif not (system.is_engine or type(system).marked().keys() <= _OBSERVING):
+        elif not (system.is_engine or system.leaves_motion()):
             return sentence("acts_within_step", system=system.name)
     return None
 

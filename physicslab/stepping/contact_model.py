@@ -8,7 +8,7 @@ from physicslab.stepping.forces import fastest_rate
 from physicslab.stepping.rigid_rows import why_not_points
 from physicslab.systems.integrate import IntegrateSystem, why_nowhere
 from physicslab.systems.schedule import Schedule
-from physicslab.systems.system import AROUND, OF_FRAMES, ForceSystem, Stage
+from physicslab.systems.system import ForceSystem, Stage
 
 _MAX_PAIRS = 10_000
 """Number of pairs above which contacts are soft: each is looked at in every segment of motion."""
@@ -16,8 +16,6 @@ _MAX_BODIES = 12
 """Number of bodies above which ``auto`` takes soft contacts: a step of rigid ones could last for 20 ms."""
 _MAX_RATE = 8.0
 """Largest rate of springs and dampers times the step with which ``auto`` takes rigid contacts."""
-_OBSERVING = OF_FRAMES | AROUND | {Stage.IMPACT}
-"""The stages at which a system may observe without changing the motion."""
 
 
 def choose_contacts(state: State, schedule: Schedule, kept: str | None = None) -> tuple[str, str]:
@@ -75,9 +73,7 @@ def why_not_rigid(state: State, schedule: Schedule) -> str | None:
         if schedule.find(needed) is None:
             return sentence("system_absent", system=needed.__name__)
     for system in schedule.running:
-        if isinstance(system, ForceSystem) or system.is_engine:
-            continue
-        if not type(system).marked().keys() <= _OBSERVING:
+        if not (isinstance(system, ForceSystem) or system.is_engine or system.leaves_motion()):
             return sentence("acts_within_step", system=system.name)
     if (nowhere := why_nowhere(state)) is not None:
         return nowhere

@@ -330,6 +330,19 @@ class KeptIsland:
         begins = self.finer == 1 and self.chosen is None and not self.driven
         return begins and self.span == simulation.dt / simulation.substeps
 
+    def give_back(self, island: Island) -> None:
+        """Let an island that was made of the same bodies go on from there."""
+        part = island.state
+        part.contacts.impulse_dt, part.contacts.substep_factor = self.span, self.finer
+        for entity, *pose in self.driven:
+            row, transform = part.entity_index.row_of[int(entity)], part.table(Transform)
+            transform["position"][row], transform["angle"][row] = pose[:2], pose[2]
+        own = {int(row[0]): ((*row[1:4], 0.0, 0.0, 0.0), (*row[4:], 0.0, 0.0, 0.0)) for row in self.driven}
+        part.remainders = Remainders.joined([Remainders.of_bodies(own), part.remainders])
+        if self.chosen is not None:
+            with part.active():
+                island.world.resume(*self.chosen)
+
 
 def kept_of(state: State, island: Island) -> KeptIsland:
     """Return what a file keeps of an island."""

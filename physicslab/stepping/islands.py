@@ -398,18 +398,8 @@ class Islands:
             return
         members = list[Island]()
         for one in kept:
-            island = self._island(state, np.array(sorted(one.bodies), np.int64), [state])
-            part = island.state
-            part.contacts.impulse_dt, part.contacts.substep_factor = one.span, one.finer
-            for entity, *pose in one.driven:
-                row, transform = part.entity_index.row_of[int(entity)], part.table(Transform)
-                transform["position"][row], transform["angle"][row] = pose[:2], pose[2]
-            own = {int(row[0]): ((*row[1:4], 0.0, 0.0, 0.0), (*row[4:], 0.0, 0.0, 0.0)) for row in one.driven}
-            part.remainders = Remainders.joined([Remainders.of_bodies(own), part.remainders])
-            if one.chosen is not None:
-                with part.active():
-                    island.world.resume(*one.chosen)
-            members.append(island)
+            members.append(self._island(state, np.array(sorted(one.bodies), np.int64), [state]))
+            one.give_back(members[-1])
         self.adopt(state, members)
 
     def contacts(self, state: State, *, rescaled: bool = True) -> KeptContacts:

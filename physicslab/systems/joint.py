@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Gear, Name, Pin, Slot, Transform
-from physicslab.components.gear import COUPLED, OTHER_JOINT
+from physicslab.components.gear import COUPLED, why_not_coupled
 from physicslab.components.joint_ends import key_of, why_not_joined
 from physicslab.contacts.arguments import do_stage
 from physicslab.contacts.islands import wake_all
@@ -86,16 +86,16 @@ def _refuse_equal(
 def _refuse_gears(state: State, rows: NDArray[np.int64]) -> None:
     """Refuse what couples an entity with two joints, or the joints of another Gear."""
     table, known = state.table(Gear), dict[frozenset[int], str]()
+
+    def joints(entity: int) -> int:
+        row = state.entity_index.row_of[entity]
+        return sum(int(state.table(kind).present[row]) for kind in (Pin, Slot))
+
     for row in rows.tolist():
-        label, ends = state.label_of_row(row), [int(table[name][row]) for name in ("first", "second")]
-        for name, end in zip(("first", "second"), ends, strict=True):
-            if all(state.table(kind).present[state.entity_index.row_of[end]] for kind in (Pin, Slot)):
-                raise InvalidValue(f"{label}: Gear", name, end, COUPLED)
-        if ends[0] == ends[1]:
-            raise InvalidValue(f"{label}: Gear", "second", ends[1], OTHER_JOINT)
-        other = known.setdefault(frozenset(ends), label)
-        if other is not label:
-            raise InvalidValue(f"{label}: Gear", "second", ends[1], f"another joint than {other} couples")
+        label, ends = state.label_of_row(row), (int(table["first"][row]), int(table["second"][row]))
+        if (refused := why_not_coupled(*ends, joints, known)) is not None:
+            raise InvalidValue(f"{label}: Gear", *refused)
+        known[frozenset(ends)] = label
 
 
 class JointSystem(System):

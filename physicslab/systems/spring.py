@@ -147,7 +147,7 @@ class SpringSystem(ForceSystem):
         spring, bodies = state.table(Spring), state.bodies
         rest, stiffness = spring["rest_length"][self._rows], spring["stiffness"][self._rows]
         rigid = (rest > 0.0) & (stiffness > 0.0)
-        if not rigid.any() or (self._lengths(state)[rigid] < _NOTHING * rest[rigid]).any():
+        if not rigid.any() or len(self.directionless(state)):
             return None  # or it is singular already, and no step leads away from there but a fixed one
         free = bodies.inverse_mass > 0.0
         mass, linear = state.table(Mass)["mass"][free], state.table(Velocity)["linear"][free]
@@ -156,6 +156,11 @@ class SpringSystem(ForceSystem):
             available += 2.0 * float(mass.sum()) * state.physics.gravity.magnitude * float(rest.max())
         enough = available > 0.25 * float((0.5 * stiffness * rest * rest)[rigid].min())
         return sentence("compressed_to_nothing") if enough else None
+
+    def directionless(self, state: State) -> NDArray[np.int64]:
+        """Return the rows (n,) of springs that push, but whose ends are in one place."""
+        rest, stiffness = (state.table(Spring)[name][self._rows] for name in ("rest_length", "stiffness"))
+        return self._rows[(rest > 0.0) & (stiffness > 0.0) & (self._lengths(state) < _NOTHING * rest)]
 
     def _lengths(self, state: State) -> NDArray[np.float64]:
         """Return how long every spring is [m]."""

@@ -156,6 +156,11 @@ class System:
         return not AROUND.isdisjoint(cls.marked()) or (not cls.engine and Stage.IMPACT in cls.marked())
 
     @classmethod
+    def leaves_motion(cls) -> bool:
+        """Whether it acts in no step, but around it or at its impacts."""
+        return cls.marked().keys() <= OF_FRAMES | AROUND | {Stage.IMPACT}
+
+    @classmethod
     @cache  # the steppers of a world are chosen again whenever its laws are edited
     def marked(cls) -> Mapping[Stage, str]:
         """Return the stages of the system, each with the name of its method.

@@ -14,7 +14,7 @@ from physicslab.kernels import Plain, Rows, Vectors, always_inlined, inlined, ke
 from physicslab.kernels.accounts import IMPACTS
 from physicslab.kernels.arguments import Bounds, Inverse, Materials, Motion, Sampled, take_sample
 from physicslab.kernels.clock import next_time
-from physicslab.kernels.constraint.pair import frame_of, inverse_mass_of
+from physicslab.kernels.constraint.pair import PairInverseMass, frame_of, inverse_mass_of
 from physicslab.kernels.events.encounter import bend_of, gap_of, meeting_of, time_apart, touch_pair
 from physicslab.kernels.events.path import advance_to, begin, place, seen_from
 from physicslab.kernels.events.path_impact import path_velocity, resolve_ballistic_impacts
@@ -46,6 +46,8 @@ _AHEAD = 64.0
 """Steps for which pairs are at most taken as apart before they are looked at again."""
 _NEARER = 1e-11
 """Share of the farthest place within that time by which pairs are taken as nearer than they seem apart."""
+_BEHIND = 1.0 - 1e-9
+"""The least cosine of the angle between what pushes a body and what is behind it."""
 _MAX_REPEATS = 32
 """Largest number of bounces of an inelastic pair within that time; then it stays together."""
 
@@ -135,12 +137,34 @@ def _first_step(
 
 
 @inlined
-def _bounce(flight: Flight, p: int, log: Impacts, number: int, time: float, approach: float) -> None:
+def _inverse_mass(flight: Flight, p: int, row: int, within: float, now: float) -> float:
+    """Return the inverse mass of a body of pair p: none if it rests on what is fixed behind it.
+
+    Else what is heavy, and pushes it there, would lose the share of a light mass at each of its impacts.
+    """
+    mode, due, mine = flight.mode, flight.due, flight.manifolds[p]
+    for k in range(flight.pairs):
+        if k == p or due[k, 3] <= _MAX_REPEATS or now - due[k, 2] > within:
+            continue
+        a, b = flight.manifolds[k].a, flight.manifolds[k].b
+        if (a == row and mode[b] == FIXED) or (b == row and mode[a] == FIXED):
+            other = flight.manifolds[k]
+            along = mine.normal_x * other.normal_x + mine.normal_y * other.normal_y
+            if (along if (a == row) != (mine.a == row) else -along) > _BEHIND:
+                return 0.0
+    return flight.inverse.mass[row]
+
+
+@inlined
+def _bounce(
+    flight: Flight, p: int, log: Impacts, number: int, time: float, approach: float,
+    mass: PairInverseMass[float],
+) -> None:  # fmt: skip
     """Resolve an impact of a pair whose paths begin now, and book it; write it, if they do ``approach``."""
     manifold, point = flight.manifolds[p], flight.points[2 * p]
     paths, angle, angular = flight.paths, flight.motion.angle, flight.motion.angular
     a, b = manifold.a, manifold.b
-    mass, before = inverse_mass_of(flight.inverse, a, b), path_velocity(paths, angular, a, b)
+    before = path_velocity(paths, angular, a, b)
     impulses, law = resolve_ballistic_impacts(manifold, frame_of(manifold, point), paths, angular, mass)
     points = ImpactPoints(frame_of(manifold, point), frame_of(manifold, point), impulses)
     after = path_velocity(paths, angular, a, b)
@@ -201,10 +225,14 @@ def _meet(
         advance_to(paths, b, angle, angular, now, low, flight.account)
     due[p, 3] = due[p, 3] + 1.0 if now - due[p, 2] <= _SAME_TIME * span else 0.0
     due[p, 2], due[p, 4] = now, float(number)
-    e = manifold.restitution
+    e, mass = manifold.restitution, inverse_mass_of(flight.inverse, a, b)
     if e < 1.0 and due[p, 3] > _MAX_REPEATS:
         manifold.restitution = 0.0
-    _bounce(flight, p, log, number, start + (now + low), approach)
+        mass_a = _inverse_mass(flight, p, a, _SAME_TIME * span, now)
+        mass = PairInverseMass(
+            mass_a, mass.inertia_a, _inverse_mass(flight, p, b, _SAME_TIME * span, now), mass.inertia_b
+        )
+    _bounce(flight, p, log, number, start + (now + low), approach, mass)
     manifold.restitution, manifold.count, manifold.found = e, 0, 0
     return DONE, 1 if approach > 0.0 else 0
 

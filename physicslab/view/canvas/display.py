@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import io
-import itertools
 import os
 import sys
 import time
@@ -17,7 +16,7 @@ from pathlib import Path
 import pygame
 
 from physicslab.ecs.config import WindowConfig
-from physicslab.files.replace import create_file
+from physicslab.files.replace import create_first, with_numbers
 from physicslab.theme import DARK
 from physicslab.view.canvas.drawable_text import drawable
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
@@ -125,12 +124,7 @@ class Display:
         name = datetime.now().strftime("physicslab-%Y%m%d-%H%M%S")
         picture = io.BytesIO()
         pygame.image.save(self.canvas.surface, picture, f"{name}.png")
-        for count in itertools.count(1):
-            path = directory / (f"{name}.png" if count == 1 else f"{name}-{count}.png")
-            with contextlib.suppress(FileExistsError):
-                create_file(path, picture.getvalue())
-                break
-        return path
+        return create_first(with_numbers(directory / f"{name}.png"), picture.getvalue())
 
 
 def _size_at_first(config: WindowConfig, density: float) -> list[int]:

@@ -11,7 +11,8 @@ from physicslab.history import Group, Spawn
 from physicslab.state.attached import local_point as in_frame
 from physicslab.state.joints import Joint
 from physicslab.view.canvas.quantities import quantity
-from physicslab.view.controls.drawing import Drawn, join
+from physicslab.view.controls.drawing import join
+from physicslab.view.controls.drawn import Drawn
 from physicslab.view.controls.picking import bodies_at
 from physicslab.view.window.ends import STUCK, local_point, spring_between
 from physicslab.view.window.placing import meetings

@@ -8,11 +8,10 @@ from typing import NamedTuple
 
 from physicslab.ecs.quantity_text import InvalidText, evaluate
 from physicslab.ecs.vector import Vector2
+from physicslab.view.window.copying import MOST
 
 _TURN = math.pi / 12.0
 """The step of directions while Shift is held [rad]."""
-MOST = 2_000
-"""How many bodies are drawn at once at most."""
 _BETWEEN = re.compile(r"\s*(?:,\s+|;|\bx\b|×)\s*")
 """Separators of two numbers."""
 

@@ -11,6 +11,7 @@ from physicslab.ecs.vector import Vector2
 from physicslab.history import AddComponent, Command, Group, Remove, RemoveComponent, SetField
 from physicslab.languages.sentence import Sentence
 from physicslab.state.attached import attached_to, place_of
+from physicslab.view.controls.measure import LENGTH
 from physicslab.view.controls.picking import centre_near, directions_near, instrument_at, point_at
 from physicslab.view.controls.tool import Tool
 from physicslab.view.overlay.instruments import instrument_of
@@ -20,8 +21,6 @@ from physicslab.world import World
 
 _CLICK = 4.0
 """How far apart a press and a release are at most that are a click [px]."""
-_SNAP = math.pi / 12.0
-"""The step of directions while Shift is held [rad]."""
 _NEARLY = math.radians(1.5)
 """How far from a direction an arm may be drawn to be meant to have it [rad]."""
 _SHARE = 0.3
@@ -40,7 +39,7 @@ def _spot(world: World, window: Window, origin: Vector2 | None = None) -> Spot:
     if origin is not None and place != origin:
         way = place - origin
         if pygame.key.get_mods() & pygame.KMOD_SHIFT:
-            place = origin + Vector2.from_angle(round(way.angle / _SNAP) * _SNAP, way.magnitude)
+            place = origin + LENGTH.rounded(way)
         elif window.measuring.kind_in_hand is Protractor:
             place = origin + Vector2.from_angle(
                 _straightened(world, window, origin, way.angle), way.magnitude

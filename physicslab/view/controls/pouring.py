@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from physicslab.ecs.quantity_text import InvalidText, evaluate
 from physicslab.ecs.vector import Vector2
 from physicslab.state.solid import solid_rows
-from physicslab.view.controls.measure import MOST
+from physicslab.view.window.copying import MOST
 from physicslab.view.window.placing import outlines_of
 from physicslab.view.window.window import Window
 from physicslab.world import World

@@ -8,7 +8,7 @@ from pathlib import Path
 from physicslab.diagnostics.table_rows import TableRows
 from physicslab.ecs.text import printable
 from physicslab.files.listing import is_scene
-from physicslab.files.replace import create_file, reason_of, replace_file
+from physicslab.files.replace import create_file, create_first, reason_of, replace_file
 from physicslab.files.scene import SceneError, file_stem, is_step, scene_bytes
 from physicslab.languages.language import language
 from physicslab.languages.sentence import Sentence
@@ -140,16 +140,13 @@ def _written(world: World, window: Window, path: Path, *, copies: bool, is_new: 
 
 def save_new(world: World, window: Window, what: str, ending: str, content: bytes) -> None:
     """Write something that belongs to a scene to a new file where the program was started; show its name."""
-    for path in new_paths(Path.cwd(), file_stem(f"{name_of(world, window) or 'scene'}-{what}"), ending):
-        try:
-            create_file(path, content)
-        except FileExistsError:
-            continue
-        except OSError as error:
-            window.notify(f"The {what} could not be saved: {reason_of(error)}", 6.0, failed=True)
-            return
+    stem = file_stem(f"{name_of(world, window) or 'scene'}-{what}")
+    try:
+        path = create_first(new_paths(Path.cwd(), stem, ending), content)
+    except OSError as error:
+        window.notify(f"The {what} could not be saved: {reason_of(error)}", 6.0, failed=True)
+    else:
         window.notify(f"Saved {printable(str(path))}")
-        return
 
 
 def save_table(

@@ -9,8 +9,9 @@ from physicslab import prefabs
 from physicslab.components import Pin, Transform
 from physicslab.ecs.vector import Vector2
 from physicslab.view.controls import measure
-from physicslab.view.controls.drawing import Drawn
+from physicslab.view.controls.drawn import Drawn
 from physicslab.view.controls.polygons import build_polygon, build_ramp
+from physicslab.view.window.copying import MOST
 from physicslab.view.window.edits import Recipe
 from physicslab.world import World
 
@@ -36,8 +37,8 @@ def _size(length: float) -> float:
 
 def _check_number(number: float, things: str) -> None:
     """Refuse more bodies than one drag makes: a way across a view of kilometres has room for millions."""
-    if number > measure.MOST:
-        raise ValueError(f"room for {number:,.0f} {things}; at most {measure.MOST:,} are made")
+    if number > MOST:
+        raise ValueError(f"room for {number:,.0f} {things}; at most {MOST:,} are made")
 
 
 def _circle(world: World, places: Places, recipe: Recipe) -> None:

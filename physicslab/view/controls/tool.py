@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import pygame
 
-from physicslab.view.controls.drawing import Drawn
+from physicslab.view.controls.drawn import Drawn
 from physicslab.view.window.window import Action, Window
 from physicslab.world import World
 

@@ -13,7 +13,7 @@ from physicslab.history import Command, Group, Remove, RemoveComponent, SetField
 from physicslab.languages.sentence import Sentence
 from physicslab.state.joint_rows import KINDS
 from physicslab.view.controls import drawing
-from physicslab.view.controls.drawing import Drawn
+from physicslab.view.controls.drawn import Drawn
 from physicslab.view.controls.joining import JOINTS, SPRING
 from physicslab.view.controls.measure import motion_of
 from physicslab.view.controls.measuring import MEASURING_TOOLS, detached, take_instrument

@@ -14,12 +14,14 @@ from physicslab.view.controls import actions, drawing
 from physicslab.view.controls.choosing_keys import choose_key, usual
 from physicslab.view.controls.context import open_context, thing_at
 from physicslab.view.controls.controls import KEYS, RELEASES, reaches_world
+from physicslab.view.controls.drawn import is_dragged
 from physicslab.view.controls.file_actions import open_file
 from physicslab.view.controls.impact_actions import clicked_impact, close_up
 from physicslab.view.controls.keyboard import open_menu
 from physicslab.view.controls.measuring import follow_pointer, let_instrument_go, take_end
 from physicslab.view.controls.picking import body_at
 from physicslab.view.controls.pouring import pour
+from physicslab.view.controls.preview import about
 from physicslab.view.controls.spawning import BOX
 from physicslab.view.controls.tool import Tool
 from physicslab.view.controls.tools import TOOLS
@@ -137,7 +139,7 @@ class WindowEvents:
         self._follow_snapping(world)
         window.hand.move(window.target, window.now)
         window.hand.lead(world, window.coming(world), window.pace.paused)
-        if self._right is not None and window.sketch.grips and drawing.is_dragged(BOX, window):
+        if self._right is not None and window.sketch.grips and is_dragged(BOX, window):
             self._right = None
         if self._right is not None and window.now - self._right > _HELD:
             self._right = None
@@ -345,7 +347,7 @@ def follow_snapping(world: World, window: Window) -> None:
         snapping.follow(world, camera, cursor, cursor, None, ())
     elif (drawn := TOOLS[window.tool].draws) is not None:
         whole = drawn.build is not None and drawn.by_click and not window.sketch.grips
-        snapping.follow(world, camera, cursor, cursor, drawing.about(drawn, window) if whole else None, ())
+        snapping.follow(world, camera, cursor, cursor, about(drawn, window) if whole else None, ())
 
 
 def _about(world: World, entity: int) -> Outlines | None:

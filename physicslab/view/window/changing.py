@@ -11,8 +11,9 @@ from physicslab.ecs.text import in_words
 from physicslab.ecs.vector import Vector2
 from physicslab.history import AddComponent, Command, RemoveComponent, SetField
 from physicslab.state.attached import local_point as in_frame
+from physicslab.state.attached import point_of
 from physicslab.state.joint_rows import KINDS
-from physicslab.view.window.ends import local_point, point_of
+from physicslab.view.window.ends import local_point
 from physicslab.view.window.placing import refused_change
 from physicslab.view.window.window import Window
 from physicslab.world import World

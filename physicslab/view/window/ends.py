@@ -14,6 +14,7 @@ from physicslab.ecs.fields import InvalidValue
 from physicslab.ecs.vector import Vector2
 from physicslab.history import SetField
 from physicslab.state.attached import local_point as in_frame
+from physicslab.state.attached import point_of
 from physicslab.state.joint_rows import KINDS
 from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.quantities import quantity
@@ -21,14 +22,6 @@ from physicslab.view.window.edits import Edits
 from physicslab.world import World
 
 # ---- points of bodies: in a frame of their own, and in the world -------------------------------------------
-
-
-def point_of(world: World, body: int | None, anchor: Vector2) -> Vector2:
-    """Return where a point in a body's frame is in the world [m]; without a body it is one of the world."""
-    if body is None or not world.has(body, Transform):
-        return anchor
-    transform = world.component(body, Transform)
-    return transform.position + anchor.rotated(transform.angle)
 
 
 def local_point(world: World, body: int | None, place: Vector2) -> Vector2:

@@ -7,8 +7,7 @@ from typing import Any, NamedTuple
 from physicslab.components import Rod, Rope, Shape, Spring, Transform, Velocity
 from physicslab.ecs.vector import Vector2
 from physicslab.history import Command, SetField
-from physicslab.state.attached import motion_of_point
-from physicslab.view.window.ends import point_of
+from physicslab.state.attached import point_of
 from physicslab.world import World
 
 _LENGTHS: dict[type[Any], str] = {Rod: "length", Rope: "length", Spring: "rest_length"}
@@ -70,7 +69,7 @@ def _links(world: World, body: int, kind: type[Any]) -> list[Hanging]:
             is_fixed = other is None or not world.has(other, Velocity)
             if own == body and is_fixed and not anchor and world.has(body, Velocity):
                 pivot = point_of(world, other, fixed)
-                arm = motion_of_point(world, body, anchor)[0] - pivot
+                arm = point_of(world, body, anchor) - pivot
                 found.append(Hanging(body, entity, kind, pivot, arm))
     return found
 

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from physicslab.components import Transform
 from physicslab.ecs.vector import Vector2
-from physicslab.view.window.ends import point_of
+from physicslab.state.attached import point_of
 from physicslab.world import World
 
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from physicslab.components import Drag, Mass, Material, Shape, Spring, Trail, Transform, Velocity
 from physicslab.ecs.component import Component
 from physicslab.ecs.fields import LENGTH_LIMIT, Field
-from physicslab.ecs.quantity_text import points_text
+from physicslab.ecs.value_text import points_text
 from physicslab.ecs.vector import Vector2
 from physicslab.history import AddComponent, Command, SetField
 from physicslab.languages.sentence import Sentence

@@ -18,7 +18,8 @@ from physicslab.view.canvas.quantities import quantity
 from physicslab.view.controls import copies
 from physicslab.view.controls.actions import choose_tool, select_all
 from physicslab.view.controls.dashboard_actions import plot_selected
-from physicslab.view.controls.drawing import Drawn, click
+from physicslab.view.controls.drawing import click
+from physicslab.view.controls.drawn import Drawn
 from physicslab.view.controls.joining import attachments
 from physicslab.view.controls.spawning import BODIES, GROUPS
 from physicslab.view.controls.tools import DRAWING, remove_selected

@@ -11,7 +11,8 @@ import pygame
 from imgui_bundle import ImVec2, imgui
 
 from physicslab.ecs.fields import Field, InvalidValue
-from physicslab.ecs.quantity_text import InvalidText, evaluate, evaluate_points
+from physicslab.ecs.quantity_text import InvalidText, evaluate
+from physicslab.ecs.value_text import evaluate_points
 from physicslab.languages.sentence import Sentence
 from physicslab.view.canvas.keyboard import held_keys
 from physicslab.view.toolkit.style import packed

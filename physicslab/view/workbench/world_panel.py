@@ -19,7 +19,7 @@ from physicslab.languages.sentence import Sentence
 from physicslab.theme import Colour, Theme
 from physicslab.view.canvas.quantities import quantity, round_quantity, without_rounding
 from physicslab.view.controls.actions import gravity_in_words, has_gravity
-from physicslab.view.controls.drawing import Drawn
+from physicslab.view.controls.drawn import Drawn
 from physicslab.view.toolkit.style import packed
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.desk import LEVELS

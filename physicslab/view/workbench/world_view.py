@@ -12,7 +12,7 @@ from physicslab.ecs.vector import Vector2
 from physicslab.view.canvas.camera import Drawing
 from physicslab.view.canvas.canvas import Rect, is_within
 from physicslab.view.canvas.quantities import quantity
-from physicslab.view.controls import drawing
+from physicslab.view.controls import preview
 from physicslab.view.controls.copies import coming
 from physicslab.view.controls.measuring import spot_of
 from physicslab.view.controls.picking import body_at
@@ -150,7 +150,7 @@ class WorldView:
         words = tool.prompts[min(len(state.spots), len(tool.prompts) - 1)] if tool.prompts else ""
         if window.sketch.name or not words:
             drawn = TOOLS[window.sketch.name or tool.name].draws
-            words = "" if drawn is None else drawing.reading(world, drawn, window)
+            words = "" if drawn is None else preview.reading(world, drawn, window)
         if window.hand.entity is not None and window.sketch.typed:
             words = f"{window.sketch.typed}_"
         if words and idle and state.dragged is None and state.writing is None:
@@ -188,7 +188,7 @@ class WorldView:
             or window.pointer_beside_panel
         ):
             return
-        shown = drawing.ghost(world, drawn, window)
+        shown = preview.ghost(world, drawn, window)
         if shown is not None:
             marks.draw_ghost(shown[0], on.theme.accent if shown[1] else on.theme.error, on)
 
@@ -220,8 +220,8 @@ class WorldView:
             return
         if drawn.join is None and not (drawn.is_open or drawn.hangs):
             return
-        body = drawing.hovered(world, drawn, window)
+        body = preview.hovered(world, drawn, window)
         if body is not None:
             marks.draw_selection(world, (body,), on)
         if window.sketch.grips:
-            marks.draw_dashes(drawing.lines(world, drawn, window), on)
+            marks.draw_dashes(preview.lines(world, drawn, window), on)
