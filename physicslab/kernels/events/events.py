@@ -152,7 +152,7 @@ def _inverse_mass(flight: Flight, p: int, row: int, within: float, now: float) -
             along = mine.normal_x * other.normal_x + mine.normal_y * other.normal_y
             if (along if (a == row) != (mine.a == row) else -along) > _BEHIND:
                 return 0.0
-    return flight.inverse.mass[row]
+    return float(flight.inverse.mass[row])
 
 
 @inlined
