@@ -15,6 +15,7 @@ from physicslab.components import Velocity
 from physicslab.diagnostics.free_body import applied_forces
 from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import load_scene
+from physicslab.languages.language import language
 from physicslab.prefabs import box, circle
 from physicslab.state import contents
 from physicslab.theme import DARK, Colour
@@ -31,7 +32,7 @@ from physicslab.view.overlay.arrows import (
     max_length,
 )
 from physicslab.view.overlay.forces import NORMAL_LENGTH
-from physicslab.view.overlay.legend import Gauge
+from physicslab.view.overlay.legend import Gauge, legends_of
 from physicslab.world import World
 
 KINDS = (VELOCITY, FORCE, CONTACT_NORMAL, NORMAL_IMPULSE, FRICTION_IMPULSE)
@@ -284,3 +285,31 @@ def test_the_legend_is_brief_where_all_its_words_would_cover_bodies() -> None:
     words = [words for words, _ in canvas.words]
     assert "Net force" in words
     assert not any("strokes across" in line for line in words)
+
+
+def test_the_words_of_a_row_of_the_legend_lie_apart_in_german() -> None:
+    """Of a lesson that waits for a prediction they lay over each other."""
+    canvas = MeasuringCanvas((1280, 720))
+    canvas.language = language("de")
+    desk = Desk(empty_world(), canvas)
+    overlays = desk.window.overlays
+    overlays.arrows = overlays.awaits_prediction = True
+    whole = next(iter(legends_of(overlays, (800, 600), Drawing(canvas, Camera(canvas.size), DARK, 15))))
+    said = {text: (place, canvas.text_size(text, style)[0]) for text, place, style, _ in whole.texts}
+    (left, y), width = said["Net force"]
+    (right, same), length = said["after your prediction"]
+    assert y == same and left + width < right - length
+
+
+def test_the_legend_has_the_scale_of_the_forces_on_the_selection() -> None:
+    """They have a scale of their own: a weight of 30 N stood beside "1 m = 50 N" and was 1.5 m long."""
+    canvas = MeasuringCanvas((1280, 720))
+    desk = Desk(empty_world(), canvas)
+    body = circle(desk.world, (0.0, 0.0), radius=0.5)
+    desk.key("v")
+    desk.frames(3)
+    assert "Forces on the selection" not in [words for words, _ in canvas.words]
+    desk.window.selection.take(body)
+    desk.frames(3)
+    words = [words for words, _ in canvas.words]
+    assert words[words.index("Forces on the selection") + 1] == desk.window.overlays.body_force.words

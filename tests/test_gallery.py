@@ -162,3 +162,19 @@ def test_beside_a_docked_graph_cards_fill_the_gallery() -> None:
     wide = {window.name: window.size.x for window in imgui.get_current_context().windows}
     (cards,) = (wide[name] for name in wide if name.startswith("Scenes/cards"))
     assert cards > 0.9 * wide["Scenes"]
+
+
+def test_with_large_letters_beside_graphs_there_is_room_for_cards() -> None:
+    """Tags filled the gallery, and it had no card."""
+    desk = sized((1280, 800), load_scene("pendulum"), text_scale=2.0)
+    tap(desk, "l")
+    desk.frames(SETTLED)
+    desk.sandbox.interface.toolkit.enter()
+    height = {window.name: window.size.y for window in imgui.get_current_context().windows}
+    (cards_height,) = (height[name] for name in height if name.startswith("Scenes/cards"))
+    assert cards_height > 300 and height["Scenes"] <= 800
+    click(desk, "Tag")
+    desk.frames(SETTLED)
+    click(desk, "Tag: buoyancy")
+    desk.frames(SETTLED)
+    assert cards(desk) == [SCENES["floating"].title]
