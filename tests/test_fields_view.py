@@ -45,6 +45,16 @@ def test_an_electric_field_has_arrows_along_it_and_a_thrust_a_flame_against_it()
     assert flame["end"] - flame["start"] == pytest.approx(np.array([(0.0, 48.0)])), "downwards"
 
 
+def test_the_panel_has_the_softening_of_planets() -> None:
+    """What helps where two fall into each other could not be set in the window."""
+    desk = Desk(load_scene("two_planets"))
+    desk.window.level = "Engineer"
+    desk.frames(3)
+    fill(desk, "softening", "10 cm")
+    assert desk.world.physics.softening == 0.1
+    pygame.display.quit()
+
+
 def test_the_panel_has_the_laws_of_charges_where_there_are_any() -> None:
     desk = Desk(load_scene("crossed_fields"))
     desk.window.level = "Engineer"

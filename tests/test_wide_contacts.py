@@ -311,6 +311,10 @@ def test_a_body_made_smaller_is_so_in_a_copy_and_a_file_too(name: str) -> None:
     assert bits(worlds[2]) == bits(world)
 
 
+_LOOKED_AT = 20
+"""Edits at which it is looked before the room is nearly full, and about as many after that."""
+
+
 @pytest.mark.parametrize("contacts", ["soft", "rigid"])
 def test_vertices_that_are_new_in_this_process_count_whatever_room_there_is_for_them(contacts: str) -> None:
     world = open_space(contacts=contacts)
@@ -320,6 +324,10 @@ def test_vertices_that_are_new_in_this_process_count_whatever_room_there_is_for_
     pool, shape, edits = REGISTER.pool, world.component(wedge, Shape), 0
     while REGISTER.pool is pool:
         edits += 1
+        if edits == _LOOKED_AT:  # nearly all of its room is taken by others
+            taken = int(REGISTER.kinds[:, 1].max())
+            for n in range((len(pool) - taken) // 3 - _LOOKED_AT):
+                Shape.polygon([(0.0, 0.0), (1.0 + 1e-6 * n, 0.0), (0.0, 1.0 + edits + (contacts == "soft"))])
         share = 1.0 + 1e-9 * (edits + 1000 * (contacts == "soft"))
         shape.vertices = [(-0.3, -0.2 * share), (0.6, -0.2 * share), (-0.3, 0.4 * share)]
         world.step()

@@ -203,6 +203,10 @@ SENTENCES = {
     "too_far": "{body}: {component} is beyond {limit} m at t = {time} s; {help}",
     "smaller_steps_may_help": "a smaller dt or more substeps may help",
     "velocity_changes_fast": "{body}: Velocity changes too fast: {why}",
+    "falls_into": (
+        "{body} falls into {other}, and the pull between points grows without limit: "
+        "physics.softening > 0 keeps it finite"
+    ),
     "forces_not_finite": "forces are no longer finite at t = {time} s",
     "evaluations_exhausted": (
         "{most} force evaluations do not make a step of {step} s at a tolerance of {tolerance}; a larger "

@@ -87,6 +87,7 @@ class ArrowKind:
 VELOCITY = ArrowKind("Velocity", "velocity", Head.CLOSED)
 MOMENTUM = ArrowKind("Momentum", "planet", Head.FORKED)
 FORCE = ArrowKind("Net force", "force", Head.DOUBLE)
+BODY_FORCE = ArrowKind("Forces on the selection", "force", Head.DOUBLE, 2.6)
 CONTACT_NORMAL = ArrowKind("Contact normal", "contact_normal", Head.BAR, width=1.4)
 NORMAL_IMPULSE = ArrowKind("Normal impulse", "normal_impulse", Head.DIAMOND)
 FRICTION_IMPULSE = ArrowKind("Friction impulse", "friction_impulse", Head.OPEN, dashed=True)

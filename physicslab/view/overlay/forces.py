@@ -114,11 +114,10 @@ class Measured:
 # ---- drawing -----------------------------------------------------------------------------------------------
 
 
-_WIDTH = 2.6
-_FORCE = arrows.ArrowKind("Force", "force", arrows.Head.DOUBLE, _WIDTH)
+_WIDTH = arrows.BODY_FORCE.width
 _KINDS = {
-    "field": _FORCE,
-    "joint": _FORCE,
+    "field": arrows.BODY_FORCE,
+    "joint": arrows.BODY_FORCE,
     "normal": arrows.ArrowKind("Normal force", "normal_impulse", arrows.Head.DIAMOND, _WIDTH),
     "friction": arrows.ArrowKind("Friction", "friction_impulse", arrows.Head.OPEN, _WIDTH, dashed=True),
 }

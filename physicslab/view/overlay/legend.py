@@ -115,6 +115,8 @@ class Overlays:
         Whether the scales of arrows stay as they are.
     awaits_prediction : bool
         Whether forces and impulses are left out: a lesson's reader is to say first what will happen.
+    shows_body_forces : bool
+        Whether the forces on the selection are drawn one by one.
     reach : float
         The wanted length of the strongest arrow [m], chosen when a world is shown or an overlay turned on.
     velocity, force, impact, rest : Gauge
@@ -134,6 +136,7 @@ class Overlays:
     def __init__(self) -> None:
         self.arrows = self.impulses = self.keeps_scales = False
         self.centres = self.momenta = self.parts = self.awaits_prediction = False
+        self.shows_body_forces = False
         self.reach = 1.0
         self.velocity, self.force = Gauge("m/s"), Gauge("N")
         self.impact, self.rest = Gauge("N s"), Gauge("N s")
@@ -190,7 +193,7 @@ class Overlays:
 
 
 _WIDTH = 19.5
-"""Width of the legend, in heights of the text."""
+"""Least width of the legend, in heights of the text."""
 _MAX_SHARE = 0.3
 """Share of the world's room that it may take with all its words."""
 
@@ -255,7 +258,9 @@ def _rows(overlays: Overlays) -> tuple[list[Row], list[str]]:
                 "direction only",
             ),
         ]
-        if not overlays.awaits_prediction:
+        if overlays.shows_body_forces:
+            rows.insert(2, (Sample(arrows.BODY_FORCE), arrows.BODY_FORCE.name, overlays.body_force.words))
+        elif not overlays.awaits_prediction:
             remarks.append("Select a body to see each of the forces on it.")
     if overlays.momenta:
         rows.append((Sample(arrows.MOMENTUM), arrows.MOMENTUM.name, overlays.momentum.words))
@@ -285,7 +290,7 @@ def legends_of(overlays: Overlays, room: tuple[int, int], on: Drawing) -> Iterat
         return
     width = round(_WIDTH * on.size)
     whole = _laid_out(overlays, width, on)
-    if width <= room[0] and width * whole.size[1] <= _MAX_SHARE * room[0] * room[1]:
+    if whole.size[0] <= room[0] and whole.size[0] * whole.size[1] <= _MAX_SHARE * room[0] * room[1]:
         yield whole
     brief = _laid_out(overlays, 0, on)
     if brief.size[0] > room[0]:
@@ -294,7 +299,7 @@ def legends_of(overlays: Overlays, room: tuple[int, int], on: Drawing) -> Iterat
 
 
 def _laid_out(overlays: Overlays, width: int, on: Drawing) -> Legend:
-    """Return the legend, so wide [px]; with names alone where that is 0."""
+    """Return the legend, so wide [px] or as its rows need; with names alone where that is 0."""
     rows, remarks = _rows(overlays)
     pad, sample_length = round(0.7 * on.size), 2.4 * on.size
     label, value = TextStyle(on.size - 1, on.theme.text), TextStyle(on.size - 1, on.theme.faint)
@@ -306,6 +311,10 @@ def _laid_out(overlays: Overlays, width: int, on: Drawing) -> Legend:
     inset, y = round(pad + sample_length + 0.6 * on.size), pad
     texts: list[tuple[str, tuple[int, int], TextStyle, Align]] = []
     if width:
+        widths = [
+            sum(on.canvas.text_size(words, label)[0] for words in (name, scale)) for _, name, scale in rows
+        ]
+        width = max(width, inset + max(widths) + on.size + pad)
         kept = "scale, kept" if overlays.keeps_scales else "scale"
         texts.append((kept, (width - pad, y + heights[title] - heights[small]), small, "right"))
         texts.append(("Arrows", (pad, y), title, "left"))

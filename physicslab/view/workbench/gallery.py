@@ -1,6 +1,7 @@
 """The gallery: every scene as a card with its picture, one's own first, found by words and by tags."""
 
 import re
+from collections.abc import Sequence
 from pathlib import Path
 from textwrap import shorten
 from typing import Any
@@ -28,6 +29,8 @@ _SHARE = 0.94
 """How much of the room of the world the gallery takes at most."""
 _HEAD = 8.2
 """Height of what stands above the cards, at most, in heights of the text."""
+_LINES = 3.4
+"""How many lines tags may fill as buttons."""
 _OWN = "my own"
 """The tag of files."""
 
@@ -54,6 +57,8 @@ class Gallery:
         """Build the search and the cards in a window over the world."""
         size = ui.size
         _, _, width, height = window.framing.room()
+        if width < 2.0 * _CARD[0] * size or _SHARE * height < (4.0 + _HEAD + _CARD[1]) * size:
+            width, height = window.canvas.size  # large letters beside a small world
         columns = max(int(_SHARE * width / ((_CARD[0] + 0.6) * size)), 1)
         inner = ImVec2(columns * (_CARD[0] + 0.6) * size + 1.5 * size, _SHARE * height - (4.0 + _HEAD) * size)
         self._thumbnails.begin(window.language, runs=window.has_kernels())
@@ -88,12 +93,8 @@ class Gallery:
         ui.faint(hint, wrapped=False)
         every = [(source, known) for source in self._sources if (known := self._known(source)) is not None]
         tags = dict.fromkeys(tag for _, known in every for tag in known.tags)
-        clicked = False
-        for n, tag in enumerate(("", *sorted(tags, key=lambda tag: (tag != _OWN, ui.said(tag).casefold())))):
-            if n:
-                ui.same_line_if_room(tag, end)
-            if ui.button(f"Tag: {tag or 'all'}", shown=tag or "all", on=tag == self._tag):
-                self._tag, clicked = tag, imgui.is_mouse_released(imgui.MouseButton_.left)
+        ordered = ("", *sorted(tags, key=lambda tag: (tag != _OWN, ui.said(tag).casefold())))
+        clicked = self._build_tags(ui, ordered, end)
         wanted = _parted(plain(self._words)).split()
         found = [
             (source, known)
@@ -106,6 +107,26 @@ class Gallery:
         if entered and found and wanted:
             window.do_next(*_opening(found[0][0]))
         return found
+
+    def _build_tags(self, ui: Ui, tags: Sequence[str], end: float) -> bool:
+        """Build a button for each tag, or a list of them where these would fill more than a few lines.
+
+        Return whether one was clicked.
+        """
+        if sum(ui.button_width(tag or "all") + 0.6 * ui.size for tag in tags) > _LINES * end:
+            before = self._tag
+            self._tag = ui.choice(
+                "Tag", before, lambda: {tag: tag or "all" for tag in tags}, shown=before or "all",
+                width=min(_CARD[0] * ui.size, end),
+            )  # fmt: skip
+            return self._tag != before
+        clicked = False
+        for n, tag in enumerate(tags):
+            if n:
+                ui.same_line_if_room(tag, end)
+            if ui.button(f"Tag: {tag or 'all'}", shown=tag or "all", on=tag == self._tag):
+                self._tag, clicked = tag, imgui.is_mouse_released(imgui.MouseButton_.left)
+        return clicked
 
     def _known(self, source: Source) -> Known | None:
         known = self._thumbnails.known(source)

@@ -303,6 +303,8 @@ _NUMBERS = {
     "dt": ("Step", "Length of a step; the error falls with it"), "substeps": ("Substeps", "Parts of a step"),
     "linear_damping": ("Damping", "Share of the velocity that is lost a second"),
     "angular_damping": ("Damping of turns", "Share of the spin that is lost a second"),
+    "G": ("Gravity constant G", "How strongly bodies attract each other"),
+    "softening": ("Softening", "Nearer than this attraction grows no more: bodies that meet do not stop"),
     "coulomb_constant": ("Coulomb constant", "How strongly charges act on each other"),
     "magnetic_field": ("Magnetic field", "Out of the plane where positive"),
 }  # fmt: skip
@@ -311,6 +313,8 @@ _CHOICES = {
     "contacts": ("Contacts", CONTACTS), "sleeping": ("Sleep", tuple(_SLEEPING)),
 }  # fmt: skip
 _ROWS = ("dt", "substeps", *_CHOICES, "linear_damping", "angular_damping")
+_OF_PLANETS = ("G", "softening")
+"""Fields added where bodies attract each other."""
 _OF_CHARGES = ("coulomb_constant", "magnetic_field")
 """Fields added where anything is charged; the electric field, a vector, comes after it."""
 
@@ -319,8 +323,8 @@ def build_settings(ui: Ui, numbers: NumberFields, world: World, window: Window) 
     """Build a row for each of the step, the method, collisions, contacts, sleep and damping."""
     ui.gap(0.2)
     ui.heading("Settings")
-    charged = bool(len(world.batch(Charge)))
-    for name in (*_ROWS, *(_OF_CHARGES if charged else ())):
+    charged, attracted = bool(len(world.batch(Charge))), world.physics.gravity_mode == "planet"
+    for name in (*_ROWS, *(_OF_PLANETS if attracted else ()), *(_OF_CHARGES if charged else ())):
         held = world.simulation if hasattr(world.simulation, name) else world.physics
         now = getattr(held, name)
         if name in _NUMBERS:

@@ -117,7 +117,8 @@ class WorldView:
         chosen = window.selection.entities
         shown = len(chosen) == 1 and (overlays.arrows or window.figures) and not overlays.awaits_prediction
         measured.follow(world, chosen[0] if shown else None, window.now, paused=window.pace.paused)
-        if not (overlays.arrows and measured.forces):
+        overlays.shows_body_forces = overlays.arrows and bool(measured.forces)
+        if not overlays.shows_body_forces:
             return []
         moved, smaller = measured.moved(world, chosen[0]), replace(on, size=on.size - 1)
         return draw_free_body(measured.forces, moved, world.time, overlays, covered, smaller)
