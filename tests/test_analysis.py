@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from physicslab import SceneError, World, circle, ensemble, load_scene
+from physicslab import SceneError, World, box, circle, ensemble, load_scene
 from physicslab.cli import main
-from physicslab.components import Name, Spring, Transform
+from physicslab.components import Drag, Name, Spring, Transform
 from physicslab.ensembles import fit, sensitivity, sobol_indices
 
 VX, VY, G = "ball.Velocity.linear.x", "ball.Velocity.linear.y", "physics.gravity.y"
@@ -49,6 +49,18 @@ def test_runs_until_a_condition_give_the_derivative_of_when_it_begins_to_hold() 
     assert found.value == pytest.approx(fall / (2.0 * 9.81), rel=1e-8)
     with pytest.raises(SceneError, match="does not begin to hold"):
         sensitivity("drop", [G], measure="time", seconds=0.2, until="ball.y <= 3")
+
+
+def test_at_the_end_of_its_range_a_field_is_moved_to_one_side() -> None:
+    """A restitution of 1 was refused as 1.0005, and a drag of 0 as -0.0005."""
+    world = World()
+    ball = circle(world, (0.0, 2.0), radius=0.1, velocity=(1.0, 0.0), restitution=1.0, friction=0.0, name="b")
+    box(world, (0.0, -0.5), width=9.0, height=1.0, static=True, restitution=1.0)
+    world.add(ball, Drag())
+    drag, fields = "b.Drag.linear", ["b.Material.restitution", "b.Drag.linear"]
+    found = sensitivity(world, fields, measure={"vy": "b.vy", "x": "b.x"}, seconds=1.0)
+    assert found["vy"]["b.Material.restitution"].value == pytest.approx(math.sqrt(2 * 9.81 * 1.9), rel=1e-9)
+    assert found["x"][drag].value == pytest.approx(-0.5, rel=1e-9) and found["x"][drag].error < 1e-7
 
 
 def test_where_an_impact_comes_or_goes_the_error_says_that_there_is_no_derivative() -> None:

@@ -390,6 +390,13 @@ def test_fields_of_whole_numbers_are_varied(tmp_path: Path) -> None:
     assert main([*command, "--vary", "simulation.substeps=1:4:3"]) == 2
 
 
+def test_a_sweep_of_which_every_run_failed_has_failed(capsys: pytest.CaptureFixture[str]) -> None:
+    command = ["sweep", "drop", "--measure", "time", "--seconds", ".1", "--workers", "1"]
+    assert main([*command, "--vary", f"{M}=1:2:2", "--until", "ball.y > 99"]) == 1
+    out, err = capsys.readouterr()
+    assert "2 of them with a failure" in out and err == "physicslab: drop: no run is without a failure\n"
+
+
 def test_parts_of_another_sweep_are_not_taken(tmp_path: Path) -> None:
     arguments: dict[str, Any] = dict(samples=50, steps=2, executor="serial", out=tmp_path / "a.npz")
 

@@ -76,15 +76,15 @@ def test_words_are_found_from_their_beginnings(desk: Desk) -> None:
     assert cards(desk) == ["My clock"]
 
 
-@pytest.mark.parametrize("words", ["schiefe Ebene", "reibung", "slope", "inclined", "Hänge", "haeng"])
-def test_scenes_are_found_in_the_language_of_the_window_by_other_words_too(desk: Desk, words: str) -> None:
+def test_scenes_are_found_in_the_language_of_the_window_by_other_words_too(desk: Desk) -> None:
     """The gallery was searched in English alone."""
-    tap(desk, "escape")
     desk.window.language = "de"
-    tap(desk, "l")
-    write(desk, words)
-    title = "A hanging bridge" if words.lower().startswith("h") else "Friction on a slope"
-    assert title in cards(desk)
+    for words in ("schiefe Ebene", "reibung", "slope", "inclined", "Hänge", "haeng"):
+        tap(desk, "escape")
+        tap(desk, "l")
+        write(desk, words)
+        title = "A hanging bridge" if words.lower().startswith("h") else "Friction on a slope"
+        assert title in cards(desk), words
 
 
 def test_enter_that_opens_nothing_leaves_the_search_its_letters(desk: Desk) -> None:

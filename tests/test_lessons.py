@@ -8,6 +8,7 @@ import math
 import re
 from collections.abc import Iterable
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 from random import Random
 from types import SimpleNamespace
@@ -26,7 +27,8 @@ from physicslab.ensembles import ensemble
 from physicslab.files.scene import load_scene
 from physicslab.kernels.records import IMPACT
 from physicslab.languages.catalogue import languages
-from physicslab.lessons.catalogue import LESSONS, LIBRARY, find_lesson
+from physicslab.lessons import catalogue
+from physicslab.lessons.catalogue import LESSONS, LIBRARY
 from physicslab.lessons.check import LessonRuns, check_lesson, row_of, unit_of
 from physicslab.lessons.lesson import Compare, Lesson, Recall, Run
 from physicslab.lessons.reader import read_lesson
@@ -34,6 +36,8 @@ from physicslab.lessons.setup import Case, Parameters
 from physicslab.lessons.worksheet import worksheet
 from physicslab.world import World
 
+find_lesson = cache(catalogue.find_lesson)
+"""Returns a lesson, which is read once: nothing changes it."""
 _NO_RUN = {("error", "order"), ("pi", "circle")}
 """Questions with a wrong answer which no run shows: none of order 8 has a fixed step, bodies are discs."""
 _LOOSE = 30.0

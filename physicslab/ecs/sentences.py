@@ -94,7 +94,7 @@ SENTENCES = {
     "follows_motion": "the step follows the motion",
     "many_followed": "many bodies; steps of omega h = {phase}",
     "resolved": "steps of omega h = {phase}",
-    "contradiction": "joints contradict each other, or a limit: not all of them can be closed",
+    "contradiction": "joints did not close: they contradict each other or a limit, or pull a light body hard",
     "no_forces": "no contact forces keep all laws (Painleve's paradox, or bodies that are jammed)",
     "unresolved": "an impact has no solution",
     "many_points": "more than {limit} points touch",

@@ -68,7 +68,8 @@ def sensitivity(
 ) -> dict[str, dict[str, Derivative]]:  # fmt: skip
     """Return the derivative of each measure by each field, of the scene as it is.
 
-    By central differences of runs of the same bits, with two steps, which leaves an error of order 4.
+    By central differences of runs of the same bits, with two steps, which leaves an error of order 4. At the
+    end of a field's range they are to one side, of order 3.
 
     Parameters
     ----------
@@ -105,9 +106,10 @@ def sensitivity(
     widths = {path: _STEP * (abs(value) or 1.0) for path, value in middle.items()}
     if isinstance(fields, Mapping):
         widths = {path: _width(places[path], width) for path, width in fields.items()}
-    moves = np.array([0.5, -0.5, 1.0, -1.0])
+    sides = {path: _side(places[path], value, widths[path]) for path, value in middle.items()}
     rows = {path: np.full(4 * len(places), value) for path, value in middle.items()}
-    for k, path in enumerate(rows):
+    for k, (path, side) in enumerate(sides.items()):
+        moves = np.array([0.0, 0.25, 0.5, 1.0]) * side if side else np.array([0.5, -0.5, 1.0, -1.0])
         rows[path][4 * k : 4 * k + 4] += moves * widths[path]
     result = ensemble(
         world, {path: ("rows", values) for path, values in rows.items()}, measure=measure, seconds=seconds,
@@ -116,15 +118,31 @@ def sensitivity(
     _whole(result)
     found: dict[str, dict[str, Derivative]] = {}
     for name in result.task.measures:
-        near_up, near_down, up, down = result.columns[name].reshape(-1, 4).T
-        spans = np.array([rows[path][4 * k : 4 * k + 4] for k, path in enumerate(rows)]).T
-        half, full = (near_up - near_down) / (spans[0] - spans[1]), (up - down) / (spans[2] - spans[3])
-        values = half + (half - full) / 3.0
+        seen = result.columns[name].reshape(-1, 4)
         found[name] = {
-            path: Derivative(float(value), float(abs(value - near)))
-            for path, value, near in zip(rows, values, half, strict=True)
+            path: _derivative(rows[path][4 * k : 4 * k + 4], seen[k], sides[path])
+            for k, path in enumerate(rows)
         }
     return found
+
+
+def _side(place: Place, value: float, width: float) -> float:
+    """Return to which side a field can be moved, as 1 or -1; 0 if to both."""
+    if place.spec.kind != "number":
+        return 0.0
+    return float(value - width < place.spec.lowest) - float(value + width > place.spec.highest)
+
+
+def _derivative(at: NDArray[np.float64], seen: NDArray[np.float64], side: float) -> Derivative:
+    """Return the derivative by values (4,) of a measure ``at`` those of a field, by two steps of order 2."""
+    if side:
+        half = float((4.0 * seen[1] - 3.0 * seen[0] - seen[2]) / (at[2] - at[0]))
+        full = float((4.0 * seen[2] - 3.0 * seen[0] - seen[3]) / (at[3] - at[0]))
+    else:
+        half = float((seen[0] - seen[1]) / (at[0] - at[1]))
+        full = float((seen[2] - seen[3]) / (at[2] - at[3]))
+    value = half + (half - full) / 3.0
+    return Derivative(value, abs(value - half))
 
 
 def _width(place: Place, given: float | str) -> float:
