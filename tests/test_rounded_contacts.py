@@ -200,3 +200,23 @@ def test_what_is_within_another_leaves_by_a_face(turn: float) -> None:
     found = touch(0.0, 0.0, outline("box", 0.0, 2.0, 1.0), outline("capsule", turn, 0.5, 0.1))
     assert found.gap < 0.0
     assert found.points > 0
+
+
+@given(
+    angle_a=angles, angle_b=angles, turn=angles, aside=angles, extents=st.tuples(extents, extents), kind=kinds
+)
+@settings(deadline=None)
+def test_what_overlaps_touches_from_wherever_it_comes(
+    angle_a: float, angle_b: float, turn: float, aside: float, extents: tuple[float, float], kind: str
+) -> None:
+    # A capsule at any rounded polygon or box, that overlaps it by little; it comes on from any side.
+    one, other = outline("capsule", angle_a, *extents), outline(kind, angle_b, extents[1], extents[0])
+    x, y = math.cos(turn), math.sin(turn)
+    far, near = 10.0, 0.0
+    for _ in range(60):
+        middle = 0.5 * (far + near)
+        far, near = (middle, near) if touch(middle * x, middle * y, one, other).gap > -1e-3 else (far, middle)
+    way = Way(near * x, near * y, 0.01 * math.cos(aside), 0.01 * math.sin(aside))
+    found: Touch = touch_cores(way, one, other, POOL, 0.1, 0)
+    assert found.points > 0
+    assert min(found.one.separation, found.two.separation if found.points > 1 else 0.0) < 0.0

@@ -17,6 +17,7 @@ from physicslab.components import Drag, Held, Mass, Material, Rod, Shape, Spring
 from physicslab.contacts.islands import export_rests, wake
 from physicslab.contacts.report import contact_between, list_contacts
 from physicslab.diagnostics.energy import measure_account, measure_energy, measure_momentum
+from physicslab.diagnostics.free_body import contact_forces
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.files.json_text import json_text
@@ -804,3 +805,21 @@ def test_all_forces_pull_what_sleeps_in_the_accounts(idle: bool, alone: bool, fi
     assert account.momentum["contact"].x == pytest.approx(-4.0, rel=1e-6)
     assert account.angular_momentum["thrust"] == pytest.approx(-0.5 * 4.0, rel=1e-4)
     assert account.momentum["numerical"].magnitude < 1e-11
+
+
+def test_forces_on_what_sleeps_are_the_same_after_a_shorter_step() -> None:
+    """In slow motion a disc at rest was pressed by four times its weight."""
+    world = load_scene("sandbox")
+    world.run(seconds=8.0)
+    asleep = world.entity_index.rows_of(np.array(sorted(sleepers(world))))
+    before = contact_forces(world)[asleep]
+    world.step(0.25 * world.simulation.dt)
+    assert len(asleep) > 5 and np.allclose(contact_forces(world)[asleep], before, rtol=1e-9, atol=1e-9)
+    weight = world.table(Mass)["mass"][asleep] * 9.81
+    assert before[:, 1] == pytest.approx(weight, rel=1e-3)
+    for contact in list_contacts(world):
+        if contact.a in sleepers(world) or contact.b in sleepers(world):
+            usual = world.simulation.dt / world.simulation.substeps
+            assert all(
+                one.normal_force == pytest.approx(one.normal_impulse / usual) for one in contact.points
+            )

@@ -463,3 +463,27 @@ def test_an_end_that_comes_down_within_a_step_is_held(shape: str, restitution: f
     assert lowest > -0.006  # -0.03 where ends were first looked for in the next step
     if restitution:
         assert np.count_nonzero(turning > 1.0) > 90  # they bounce
+
+
+@pytest.mark.parametrize("restitution", [0.0, 0.6])
+def test_other_ends_of_capsules_whose_ends_are_nearest_are_held(restitution: float) -> None:
+    # A hundred capsules lie on fixed ones, each with an end on an end; the other one comes down.
+    world, half, radius = open_space(), 0.1, 0.08
+    lower, made = BodyOptions(static=True, restitution=restitution), []
+    for k in range(100):
+        tilt, x = 0.05 + 0.003 * k, 1.0 * k
+        capsule(world, (x, 0.0), length=2.0 * half, radius=radius, **lower)
+        at = x - 0.01 - half + half * math.cos(tilt), 2.0 * radius + half * math.sin(tilt)
+        upper = BodyOptions(mass=1.0, angle=tilt, restitution=restitution)
+        made.append(capsule(world, at, length=2.0 * half, radius=radius, **upper))
+    world.synchronise()
+    rows = world.entity_index.rows_of(np.array(made))
+    lowest = 0.0
+    for _ in range(30):
+        world.run(steps=1)
+        transform = world.table(Transform)
+        angle, beside = transform["angle"][rows], transform["position"][rows, 0] - np.arange(100.0)
+        above = transform["position"][rows, 1] + half * np.sin(angle) - 2.0 * radius
+        on_it = np.abs(beside + half * np.cos(angle)) < half
+        lowest = min(lowest, float(above[on_it].min(initial=0.0)))
+    assert lowest > -0.001  # -0.005 where the nearest ends were all that touched

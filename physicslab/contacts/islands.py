@@ -222,6 +222,18 @@ def _set_contacts_inactive(state: State) -> None:
     state.contacts.set_inactive(inactive, len(asleep))
 
 
+def impulse_spans(state: State, pairs: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Return the time [s] over which the impulses of recorded pairs (n,) act.
+
+    It is the substep of the last step, which may be shorter than others; of those that sleep the usual one.
+    """
+    near, spans = state.contacts.manifolds[pairs], np.full(len(pairs), state.contacts.impulse_dt)
+    if state.sleep.count:
+        asleep = state.sleep.asleep
+        spans[asleep[np.maximum(near["a"], 0)] | asleep[np.maximum(near["b"], 0)]] = _impulse_dt(state)
+    return spans
+
+
 def _impulse_dt(state: State) -> float:
     """Return the time [s] over which impulses of sleeping contacts act."""
     simulation = state.sleep.laws[1] if state.sleep.laws is not None else state.simulation

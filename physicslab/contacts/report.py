@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Transform, Velocity
+from physicslab.contacts.islands import impulse_spans
 from physicslab.contacts.outlines import outlines_of
 from physicslab.ecs.vector import Vector2
 from physicslab.state.contacts import Contacts
@@ -180,7 +181,8 @@ def _reported(contacts: Contacts) -> list[int]:
 def _describe(state: State, p: int) -> Contact:
     manifold = state.contacts.manifolds[p]
     centre = Vector2(*state.table(Transform)["position"][manifold["b"]].tolist())
-    rate = 1.0 / state.contacts.impulse_dt if state.contacts.impulse_dt > 0.0 else 0.0
+    span = float(impulse_spans(state, np.array([p]))[0])
+    rate = 1.0 / span if span > 0.0 else 0.0
     points = tuple(
         _describe_point(point, centre, rate)
         for k, point in enumerate(state.contacts.points[2 * p : 2 * p + 2])

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from physicslab.components import Mass, Transform, Velocity
 from physicslab.contacts.arguments import motion_of
+from physicslab.contacts.islands import impulse_spans
 from physicslab.contacts.report import ContactPoint, contacts_of
 from physicslab.diagnostics.present_forces import with_present_forces
 from physicslab.ecs.vector import Vector2, rotated
@@ -238,7 +239,9 @@ def contact_forces(world: World) -> NDArray[np.float64]:
     contacts.sync()
     total = np.zeros_like(now.bodies.force)
     pairs = np.flatnonzero(contacts.manifolds["count"][: contacts.recorded] > 0)
-    if not len(pairs) or contacts.impulse_dt <= 0.0:
+    spans = impulse_spans(now, pairs)
+    pairs, spans = pairs[spans > 0.0], spans[spans > 0.0]
+    if not len(pairs):
         return _by_row(world, now, total)
     near = contacts.manifolds[pairs]
     normal, tangent = np.zeros(len(pairs)), np.zeros(len(pairs))
@@ -247,7 +250,7 @@ def contact_forces(world: World) -> NDArray[np.float64]:
         normal += np.where(used, points["normal_impulse"], 0.0)
         tangent += np.where(used, points["tangent_impulse"], 0.0)
     x, y = near["normal_x"], near["normal_y"]
-    on_b = np.stack((normal * x - tangent * y, normal * y + tangent * x), axis=1) / contacts.impulse_dt
+    on_b = np.stack((normal * x - tangent * y, normal * y + tangent * x), axis=1) / spans[:, None]
     np.add.at(total, near["b"], on_b)
     bodies = near["entity_a"] > 0  # the others are the world's bounds
     np.subtract.at(total, near["a"][bodies], on_b[bodies])

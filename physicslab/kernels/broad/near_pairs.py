@@ -19,9 +19,11 @@ from physicslab.kernels import (
     inlined,
     kernel,
 )
+from physicslab.kernels.arguments import Motion, Near
 from physicslab.kernels.broad.fat_boxes import CORNERWISE
 from physicslab.kernels.geometry.contact import ACTIVATION_RATIO
 from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple, named_shapes
+from physicslab.kernels.near_counts import PROXIMITY, RECORDED, SCALAR, UNORDERED
 from physicslab.kernels.records import Couples, Manifold, Manifolds, Pairs, Points
 
 _LONG = 4.0
@@ -279,6 +281,23 @@ def activate(
         activation_distance[to] = activation_distance[proximity_count]
     merge_tail(manifolds, scalar, scalar_count, scalar_count + came, len(entities))
     return proximity_count, count + came, scalar_count + came
+
+
+@inlined
+def list_near(near: Near, motion: Motion, h: float, speculative_margin: float) -> None:
+    """Give records to the pairs that may touch within ``h`` seconds, at their velocities of now.
+
+    Scalar pairs are in order then. What ``near.touching`` lists is lost.
+    """
+    counts = near.counts
+    if counts[UNORDERED] != 0:
+        sort_scalar(near.manifolds, near.scalar, counts[SCALAR], len(motion.angle))
+        counts[UNORDERED] = 0
+    counts[PROXIMITY], counts[RECORDED], counts[SCALAR] = activate(
+        near.proximity, near.activation_distance, counts[PROXIMITY], near.manifolds, near.points,
+        counts[RECORDED], near.scalar, counts[SCALAR], near.entities, motion.position, motion.linear, h,
+        speculative_margin, near.touching,
+    )  # fmt: skip
 
 
 @inlined

@@ -17,18 +17,18 @@ LAST_X, LAST_Y, LAST_ANGLE, PATH, REACH = range(5)
 the call [m]; that, and how far it comes at most in the substep at hand."""
 _WORTH_IT = 4
 """Number of bodies a pair that is apart from which all are followed."""
+_TOUCHING, _UNKNOWN = 0xFFFFFFFF, 0xFFFFFFFE
+"""In place of A's row where a pair has points, and where it is not known yet whether it has."""
 _ROUNDING = 1e-12
 """Share of coordinates by which distances may be rounded."""
 
 
 @inlined
-def begin_step(near: Near, goes_on: bool) -> None:
-    """Let all pairs be looked at, or only new ones where a step before this one ``goes_on``."""
+def look_at_new(near: Near) -> None:
+    """Let all pairs be looked at, or only those with new records where the others are followed."""
     counts = near.counts
-    if not goes_on:
-        counts[FOLLOWED] = 0
     for p in range(counts[FOLLOWED], counts[RECORDED]):
-        near.apart[p].clearance = -math.inf
+        near.apart[p].clearance, near.apart[p].a = -math.inf, _UNKNOWN
     if counts[FOLLOWED] > 0:
         counts[FOLLOWED] = counts[RECORDED]
 
@@ -74,6 +74,28 @@ def follow(travels: Vectors, motion: Motion, shapes: Shapes, h: float) -> None:
 def stays_apart(near: Near, p: int) -> bool:
     """Whether a pair has no points in the substep at hand, as far as its bodies may have come."""
     pair, travels = near.apart[p], near.travels
-    if p >= near.counts[FOLLOWED]:
+    if p >= near.counts[FOLLOWED] or pair.clearance == -math.inf:
         return False
     return bool(pair.clearance > travels[REACH, pair.a] + travels[REACH, pair.b])
+
+
+@inlined
+def note_touching(near: Near, p: int) -> None:
+    """Note that a pair has points."""
+    near.apart[p].clearance, near.apart[p].a = -math.inf, _TOUCHING
+
+
+@inlined
+def may_be_thrown_together(near: Near, p: int) -> bool:
+    """Whether a pair without points has a body that an impact has changed, and none that it has left swift.
+
+    Swift ones are swept again from their impact on (:mod:`physicslab.kernels.solver.meet_again`).
+    """
+    a, b, changed, moments = near.apart[p].a, near.apart[p].b, near.angular_before, near.moments
+    if a == _UNKNOWN:
+        manifold = near.manifolds[p]
+        a, b = manifold.a if manifold.count == 0 else _TOUCHING, manifold.b
+    if a == _TOUCHING:
+        return False
+    hit = max(changed[a], changed[b]) >= 0.0
+    return bool(hit and max(moments[a, 0], moments[b, 0]) == -math.inf)

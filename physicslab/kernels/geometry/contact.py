@@ -29,6 +29,9 @@ _NO_MOTION = 1e-9
 """Share of these tolerances that is no motion."""
 AS_FOUND = 3
 """What ``found`` is of a pair with a disc whose point was found in its base pose, and is no later one's."""
+BEGINS, GOES_ON, WITHIN, AFTER_IMPACTS = range(4)
+"""When contacts are found: in the first substep of a step, which is the first of a call or goes on from
+another step of it; in a later substep; or again, after impacts have changed velocities."""
 _APART, _KEPT, _OUTDATED = range(3)
 """Knowledge of a pair of boxes: they have no points; their points are kept; it is out of date."""
 
@@ -336,27 +339,27 @@ def _has_few_rows(entities: Rows) -> bool:
     return filled <= _ROWS_FOUND_AGAIN
 
 
-@always_inlined
+@inlined
 def find_contacts(
     near: Near, count: int, motion: Motion, shapes: Shapes, materials: Materials, inverse: Inverse,
-    bounds: Bounds, first: bool, goes_on: bool, h: float, start: float, speculative_margin: float,
-    rest: float,
+    bounds: Bounds, when: int, h: float, start: float, speculative_margin: float, rest: float,
 ) -> int:  # fmt: skip
     """Find or refresh the contact points of the ``count`` scalar pairs; return how many have any.
 
     Their numbers are written to ``near.touching``, in order, those with fixed bodies last. A pair of boxes
     that has hardly moved keeps its points. The substep spans ``h`` seconds from ``start`` h before or after
     now: a pair that meets within it has points with the normal of that moment and the separation, along it,
-    of now. Pairs whose count is negative are moved by event-driven stepping, and passed over. ``first`` marks
-    the first substep of a step, in which records of impacts are cleared, and in which it ``goes_on`` from
-    another one of the same call; ``speculative_margin`` is how far [m] the forces may bring two bodies
-    together within the substep, which ``rest`` more may follow before points are found again.
+    of now. Pairs whose count is negative are moved by event-driven stepping, and passed over. ``when`` it is
+    says whether records of impacts are cleared, as a step begins, and whether only those pairs without points
+    are looked at of which an impact has changed a body. ``speculative_margin`` is how far [m] the forces may
+    bring two bodies together within the substep; ``rest`` more may follow before points are found again.
     """
     position, linear, touching = motion.position, motion.linear, near.touching
-    found, held, far = 0, count, 0
-    if first:
-        apart.begin_step(near, goes_on)
-    if near.counts[FOLLOWED] > 0:
+    found, held, far, first, again = 0, count, 0, when <= GOES_ON, when == AFTER_IMPACTS
+    if when == BEGINS:
+        near.counts[FOLLOWED] = 0
+    apart.look_at_new(near)
+    if near.counts[FOLLOWED] > 0 and not again:
         apart.follow(near.travels, motion, shapes, h)
     # The arms of kept points are those of the pose in which they were found.
     tolerance = 1.0 if first else TOLERANCE_WITHIN_STEP
@@ -364,7 +367,7 @@ def find_contacts(
         tolerance = _NO_MOTION
     for number in range(count):
         p = near.scalar[number]
-        if apart.stays_apart(near, p):
+        if not apart.may_be_thrown_together(near, p) if again else apart.stays_apart(near, p):
             continue
         manifold, one, two = near.manifolds[p], near.points[2 * p], near.points[2 * p + 1]
         had_points, size = manifold.count > 0, 0.0
@@ -417,8 +420,13 @@ def find_contacts(
                 effective_masses(manifold, near.points, p, inverse)
             if first or not had_points:
                 mix(manifold, materials, bounds)
-                near.apart[p].clearance = -math.inf
-            found, held = _list_pair(touching, p, manifold, inverse, found, held)
+            apart.note_touching(near, p)
+            if again:  # what passes by without touching is left to the next substep
+                touching[near.counts[ACTIVE] + found] = p
+                one.ahead = two.ahead = 1 if manifold.swept == 2 else 0
+                found += 1 - one.ahead
+            else:
+                found, held = _list_pair(touching, p, manifold, inverse, found, held)
         else:
             if had_points:
                 forget_points(one, two)
@@ -428,6 +436,8 @@ def find_contacts(
                 far += 1
             # A pair that has bounced is looked at when the next step begins.
             apart.note(near, p, a, b, clearance if manifold.impact_count == 0 else -math.inf, motion)
-    if first and near.counts[FOLLOWED] == 0:
+    if again:
+        return int(near.counts[ACTIVE] + found)
+    if near.counts[FOLLOWED] == 0:
         apart.begin_to_follow(near, motion, far)
     return _put_last(touching, found, held, count)

@@ -9,7 +9,7 @@ import math
 from typing import NamedTuple
 
 from physicslab.kernels import Vectors, always_inlined, inlined
-from physicslab.kernels.geometry.manifold import ALIKE, FAVOUR, LEVEL, Corner
+from physicslab.kernels.geometry.manifold import ALIKE, FAVOUR, LEVEL, Corner, clipped
 from physicslab.kernels.geometry.outline import Outline, Way, corner
 
 FACE, FLIPPED, VERTICES = 65, 129, 200
@@ -21,6 +21,8 @@ _SLACK = 2e-3
 """Share of the radius by which the nearest edge may pass the ends of a face: more than that hides."""
 _TIE = 1e-9
 """Share of the smallest width by which it may end before a face begins, as where vertices meet head-on."""
+_ALONG = 0.95
+"""Least cosine of the angle between a face and the way between two ends at which the other ones may touch."""
 
 
 class Touch(NamedTuple):
@@ -156,13 +158,28 @@ def _shares(rx: float, ry: float, ux: float, uy: float, wx: float, wy: float) ->
     return s, t
 
 
+@always_inlined
+def _clipped(
+    rx: float, ry: float, fx: float, fy: float, wx: float, wy: float, slack: float, tie: float
+) -> tuple[float, float]:
+    """Return between which shares an edge w is beside a face f, which it begins r from."""
+    length = math.sqrt(fx * fx + fy * fy)
+    tx, ty = fx / length, fy / length
+    along, run, side = rx * tx + ry * ty - 0.5 * length, wx * tx + wy * ty, 0.5 * length + slack
+    start, end = clipped(along, along + run, side if abs(run) > 0.0 else side + tie)
+    if abs(run) > 0.0 and start > end >= start - tie / abs(run):
+        end = start
+    return start, end
+
+
 @inlined
 def _slides_over(
     gap: float, radius: float, nx: float, ny: float, ex: float, ey: float, ux: float, uy: float
 ) -> bool:
     """Whether rounded ends meet a vertex that is hardly higher than the face with normal n beside it.
 
-    The next tile of a floor is no step. (ex, ey) leads from the vertex to what comes on, by (ux, uy).
+    The next tile of a floor is no step: they touch it as if that face went on. (ex, ey) leads from the vertex
+    to what comes on, by (ux, uy).
     """
     down = ux * nx + uy * ny
     along_x, along_y = ux - down * nx, uy - down * ny
@@ -201,32 +218,36 @@ def touch_cores(way: Way, a: Outline, b: Outline, pool: Vectors, margin: float, 
         at_ends = (s == 0.0 or s == 1.0) and (t == 0.0 or t == 1.0)
         if at_ends and apart > max(gap, 0.0) + _ENDS * both:
             separation, mx, my = apart - both, kx / apart, ky / apart
-            if _slides_over(gap, both, nx, ny, kx, ky, sign * ux, sign * uy) or separation > margin:
+            slides = _slides_over(gap, both, nx, ny, kx, ky, sign * ux, sign * uy)
+            if separation > (_ENDS * both if slides else margin):
                 return Touch(separation, sign * mx, sign * my, 0, none, none)
-            vertex, end = (next_face if s > 0.0 else face), (next_edge if t > 0.0 else edge)
-            feature = VERTICES + (end + 8 * vertex if flip else vertex + 8 * end)
+            if slides:
+                separation, mx, my = gap - both, nx, ny
+            vertex, tip = (next_face if s > 0.0 else face), (next_edge if t > 0.0 else edge)
+            feature = VERTICES + (tip + 8 * vertex if flip else vertex + 8 * tip)
             reach = one.radius + 0.5 * separation
             first = Corner(
                 from_x + px + s * fx + reach * mx, from_y + py + s * fy + reach * my, separation, feature
             )
-            return Touch(separation, sign * mx, sign * my, 1, first, none)
-    # The edge of the other one is cut off at the ends of the face.
-    length = math.sqrt(fx * fx + fy * fy)
-    tx, ty, slack, tie = fx / length, fy / length, _SLACK * both, _TIE * min(a.thin, b.thin)
-    along1, along2 = (qx - px) * tx + (qy - py) * ty, (rx - px) * tx + (ry - py) * ty
-    start, end_share, run = 0.0, 1.0, along2 - along1
-    if abs(run) > 0.0:
-        low, high = (-slack - along1) / run, (length + slack - along1) / run
-        start, end_share = max(start, min(low, high)), min(end_share, max(low, high))
-        if start > end_share >= start - tie / abs(run):
-            end_share = start
-    elif along1 < -slack - tie or along1 > length + slack + tie:
-        end_share = -1.0
-    if start > end_share:
+            points, second = 1, none
+            if gap > _ALONG * apart:
+                start, end = _clipped(qx - px, qy - py, fx, fy, wx, wy, _SLACK * both, 0.0)
+                far = end if t == 0.0 else start
+                second = on_face(far, qx, qy, wx, wy, nx, ny, distance, one.radius, other.radius)
+                second = Corner(
+                    second.x + from_x, second.y + from_y, second.separation,
+                    (FLIPPED if flip else FACE) + 8 * face + (next_edge if t == 0.0 else edge),
+                )  # fmt: skip
+                points = 2 if start < end and second.separation <= margin else 1
+            return Touch(separation, sign * mx, sign * my, points, first, second)
+    start, end = _clipped(
+        qx - px, qy - py, fx, fy, wx, wy, _SLACK * both, _TIE * min(a.thin, b.thin)
+    )  # fmt: skip
+    if start > end:
         return Touch(gap - both, sign * nx, sign * ny, 0, none, none)
     feature = (FLIPPED if flip else FACE) + 8 * face
     first = on_face(start, qx, qy, wx, wy, nx, ny, distance, one.radius, other.radius)
-    second = on_face(end_share, qx, qy, wx, wy, nx, ny, distance, one.radius, other.radius)
+    second = on_face(end, qx, qy, wx, wy, nx, ny, distance, one.radius, other.radius)
     first = Corner(first.x + from_x, first.y + from_y, first.separation, feature + edge)
     second = Corner(second.x + from_x, second.y + from_y, second.separation, feature + next_edge)
     if other.vertices == 1 or second.separation > margin:

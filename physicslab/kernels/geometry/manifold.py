@@ -168,7 +168,7 @@ def _incident_edge(nx: float, ny: float, box: Outline) -> int:
 
 
 @inlined
-def _clipped(along1: float, along2: float, side: float) -> tuple[float, float]:
+def clipped(along1: float, along2: float, side: float) -> tuple[float, float]:
     """Return the shares of an edge from ``along1`` to ``along2`` [m] between which it is within ``side``."""
     start, end = 0.0, 1.0
     run = along2 - along1
@@ -219,7 +219,7 @@ def box_box(
     x1, y1 = x1 + incident_x - origin_x, y1 + incident_y - origin_y
     x2, y2 = x2 + incident_x - origin_x, y2 + incident_y - origin_y
     tx, ty = -ny, nx
-    start, end = _clipped(x1 * tx + y1 * ty, x2 * tx + y2 * ty, side)
+    start, end = clipped(x1 * tx + y1 * ty, x2 * tx + y2 * ty, side)
     if start > end:
         return gap, 0.0, 0.0, 0, none, none
     px1, py1 = x1 + start * (x2 - x1), y1 + start * (y2 - y1)

@@ -33,7 +33,7 @@ from physicslab.kernels.geometry.shapes import Shapes
 from physicslab.kernels.geometry.sweep import INNER_SHARE
 from physicslab.kernels.records import Manifold, Point
 from physicslab.kernels.solver.impact_log import ImpactPoints, Pose, book_impact, pair_of, write_impact
-from physicslab.kernels.solver.impulse import follow_drift, measure_again
+from physicslab.kernels.solver.impulse import measure_again
 
 _MAX_SWEEPS = 32
 """Largest number of sweeps over the impacts of a substep; those left are treated as inelastic."""
@@ -41,6 +41,8 @@ _MAX_SWEEPS = 32
 A, B, LEFT_TO_SOLVER, SWEPT = range(4)
 """Notes of a pair while impacts are resolved: its bodies; whether its impulses are the solver's; and whether
 its point is one of a later moment in the substep."""
+_NEW = 2.0
+"""In place of that last one of a pair that has not been looked at yet."""
 
 
 class ImpactWindow(NamedTuple):
@@ -302,13 +304,12 @@ def _forced(
 
 
 @inlined
-def _list_rows(contacts: Contacts, noted: Vectors, changed: Numbers) -> None:
-    """Note the bodies of all pairs side by side, and that none of them has had an impact."""
-    for i in range(len(changed)):
-        changed[i] = -1.0
-    for k in range(contacts.number):
+def _list_rows(contacts: Contacts, listed: int, noted: Vectors) -> None:
+    """Note the bodies of the pairs from ``listed`` on side by side, and that these are new."""
+    for k in range(listed, contacts.number):
         manifold = contacts.manifolds[contacts.touching[k]]
         noted[2 * k, A], noted[2 * k, B] = float(manifold.a), float(manifold.b)
+        noted[2 * k, SWEPT] = _NEW
 
 
 @always_inlined
@@ -317,7 +318,7 @@ def _resolve_once(
     logged: int, h: float, window: ImpactWindow, moments: Vectors, noted: Vectors, changed: Numbers,
     sweep: int,
 ) -> tuple[int, int, int, int, bool]:  # fmt: skip
-    """Resolve the pairs one after the other; inelastic ones are resolved once, in the first ``sweep``.
+    """Resolve the pairs one after the other; inelastic ones are resolved once, in their first ``sweep``.
 
     Pairs of which no body has had an impact since the sweep before are as they were, and passed over.
     Returns how many bounced, how many are left to the solver, how many obeyed Stronge's law, how many had
@@ -329,10 +330,11 @@ def _resolve_once(
         if again and max(changed[a], changed[b]) < sweep - 1 and noted[2 * k, SWEPT] == 0.0:
             left += int(noted[2 * k, LEFT_TO_SOLVER])
             continue
+        new = noted[2 * k, SWEPT] == _NEW
         noted[2 * k, LEFT_TO_SOLVER], noted[2 * k, SWEPT] = 1.0, 0.0
         p = contacts.touching[k]
         manifold = contacts.manifolds[p]
-        if again and manifold.restitution == 0.0:
+        if again and manifold.restitution == 0.0 and not new:
             left += 1
             continue
         elastic = elastic or manifold.restitution > 0.0
@@ -378,6 +380,8 @@ def _resolve_once(
             for row in (a, b):
                 if met and (inverse.mass[row] > 0.0 or inverse.inertia[row] > 0.0):
                     changed[row] = float(sweep)
+            if manifold.swept == 2 and not met:  # it passes by at its new velocities as well
+                one.ahead = two.ahead = 1
             bounced += 1 if met else 0
             manifold.impact_count += 1 if met else 0
             energetic += 1 if law == ENERGETIC else 0
@@ -389,20 +393,25 @@ def _resolve_once(
 
 
 @inlined
-def _meet_now(contacts: Contacts, noted: Vectors, changed: Numbers) -> None:
-    """Leave inelastic pairs to the solver of which a body has had an impact: they may meet sooner by now."""
+def end_impacts(contacts: Contacts, motion: Motion, noted: Vectors, changed: Numbers) -> None:
+    """Bring separations up to date, and leave inelastic pairs to the solver whose bodies have had an impact.
+
+    These may meet sooner by now.
+    """
     for k in range(contacts.number):
         p = contacts.touching[k]
         hit = max(changed[int(noted[2 * k, A])], changed[int(noted[2 * k, B])]) >= 0.0
         if hit and contacts.manifolds[p].restitution == 0.0:
             contacts.points[2 * p].ahead = contacts.points[2 * p + 1].ahead = 0
+    measure_again(contacts, motion)
 
 
 @always_inlined
 def resolve_impacts(
     contacts: Contacts, motion: Motion, shapes: Shapes, inverse: Inverse, acting: Acting, log: Log,
     logged: int, h: float, window: ImpactWindow, moments: Vectors, noted: Vectors, changed: Numbers,
-) -> tuple[int, int, int, int]:  # fmt: skip
+    listed: int, sweep: int,
+) -> tuple[int, int, int, int, int]:  # fmt: skip
     """Bounce the pairs that meet in this substep, each at its own time.
 
     The ``window`` is that of the substep. An impact at the time t takes normal, arms and speeds of that time,
@@ -414,17 +423,20 @@ def resolve_impacts(
     none meets any more; inelastic ones only once, for the solver removes what is left of their approach.
 
     In ``moments`` it is noted when swift bodies did (:mod:`physicslab.kernels.solver.meet_again`); ``noted``
-    (points, 4) and ``changed`` (rows,) are room. Impacts go into ``log``, from ``logged`` on.
-    Returns how many there were, how many pairs are left to the solver, and how many
-    impacts obeyed Stronge's law, or had their restitution lowered, as Newton's would have made energy.
+    (points, 4) is room, and ``changed`` (rows,) has in which sweep each body had an impact last, negative if
+    none. Pairs from ``listed`` on are new since those before were gone through, up to ``sweep``. Impacts go
+    into ``log``, from ``logged`` on. Returns how many there were, how many pairs are left to the solver, how
+    many impacts obeyed Stronge's law, or had their restitution lowered, as Newton's would have made energy,
+    and the next sweep.
     """
-    impacts, left, energetic, lowered = 0, contacts.number, 0, 0
-    _list_rows(contacts, noted, changed)
-    for sweep in range(_MAX_SWEEPS):
+    impacts, left, energetic, lowered, last = 0, contacts.number, 0, 0, sweep + _MAX_SWEEPS
+    _list_rows(contacts, listed, noted)
+    while sweep < last:
         bounced, left, stronge, less, elastic = _resolve_once(
             contacts, motion, shapes, inverse, acting, log, logged + impacts, h, window, moments, noted,
             changed, sweep,
         )  # fmt: skip
+        sweep += 1
         impacts += bounced
         energetic += stronge
         lowered += less
@@ -433,9 +445,4 @@ def resolve_impacts(
         if not elastic:
             left = contacts.number
             break
-    if impacts:
-        _meet_now(contacts, noted, changed)
-        measure_again(contacts, motion)
-    if left == 0:
-        follow_drift(contacts, motion, window.end)
-    return impacts, left, energetic, lowered
+    return impacts, left, energetic, lowered, sweep

@@ -18,12 +18,11 @@ from physicslab.kernels import Rows, Vectors, allocating, inlined
 from physicslab.kernels.arguments import Acting, Inverse, Log, Materials, Motion, Near
 from physicslab.kernels.broad.fat_boxes import all_inside, left
 from physicslab.kernels.broad.near_pairs import (
-    activate,
     comes_near,
     give_record,
+    list_near,
     merge_tail,
     rank_of,
-    sort_scalar,
 )
 from physicslab.kernels.constraint.pair import ContactFrame, point_velocity, velocity_of
 from physicslab.kernels.geometry.contact import list_touching
@@ -31,7 +30,7 @@ from physicslab.kernels.geometry.outline import Way, kept_outline, on_segment
 from physicslab.kernels.geometry.pair import sweep_any
 from physicslab.kernels.geometry.shapes import Shapes
 from physicslab.kernels.geometry.sweep import MISS, is_swift, sweep_circle_circle
-from physicslab.kernels.near_counts import LOGGED, PROXIMITY, RECORDED, ROUND, SCALAR, UNORDERED
+from physicslab.kernels.near_counts import LOGGED, PROXIMITY, RECORDED, ROUND, SCALAR
 from physicslab.kernels.records import Manifold
 from physicslab.kernels.solver.impact import ImpactWindow, resolve_at
 
@@ -145,17 +144,6 @@ def _look_at_all(near: Near, motion: Motion, shapes: Shapes, h: float, end: floa
             near.touching[found] = p
             found += 1
     return found
-
-
-@inlined
-def _list_near(near: Near, motion: Motion, h: float, speculative_margin: float) -> None:
-    """Give records to the pairs that bodies which have had an impact may make at their velocities of now."""
-    counts = near.counts
-    counts[PROXIMITY], counts[RECORDED], counts[SCALAR] = activate(
-        near.proximity, near.activation_distance, counts[PROXIMITY], near.manifolds, near.points,
-        counts[RECORDED], near.scalar, counts[SCALAR], near.entities, motion.position, motion.linear, h,
-        speculative_margin, near.touching,
-    )  # fmt: skip
 
 
 @inlined
@@ -365,10 +353,7 @@ def meet_again(
     again, since an impact has thrown a body out of its fat box.
     """
     counts, moments, impacts, goes_on = near.counts, near.moments, 0, False
-    if counts[UNORDERED] != 0:
-        sort_scalar(near.manifolds, near.scalar, counts[SCALAR], len(motion.angle))
-        counts[UNORDERED] = 0
-    _list_near(near, motion, h, speculative_margin)
+    list_near(near, motion, h, speculative_margin)
     rounds, found = counts[ROUND] - 1, 0
     if rounds < _ROUNDS:
         found = _look_at_all(near, motion, shapes, h, window.end, rounds < _OUTLINES)

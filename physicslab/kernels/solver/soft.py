@@ -33,6 +33,7 @@ from physicslab.kernels.clock import next_time
 from physicslab.kernels.energy import moments_of_mass, motion_totals
 from physicslab.kernels.forces.force_calls import add_forces
 from physicslab.kernels.forces.gravity import uniform_gravity
+from physicslab.kernels.geometry.contact import BEGINS, GOES_ON, WITHIN
 from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple, named_shapes
 from physicslab.kernels.joints.blocks import Joints
 from physicslab.kernels.joints.measured import overloaded
@@ -266,21 +267,11 @@ def _advance(
                 now = charge(cost, BROAD_PHASE, now)
                 why = ALL if holds else PAIRS_STALE
             elif what == FIND:
-                first = substep == plan.first
+                when = (GOES_ON if done > 0 else BEGINS) if substep == plan.first else WITHIN
                 find_touching(
-                    near,
-                    motion,
-                    shapes,
-                    materials,
-                    inverse,
-                    bounds,
-                    first,
-                    done > 0,
-                    span,
-                    course.start,
-                    gravity.margin,
-                    plan.substeps,
-                )
+                    near, motion, shapes, materials, inverse, bounds, when, span, course.start,
+                    gravity.margin, plan.substeps,
+                )  # fmt: skip
                 if course.hooked:
                     counts[FOLLOWED] = 0  # what acts in between may change shapes
                 now = charge(cost, CONTACT, now)
@@ -298,8 +289,8 @@ def _advance(
             elif what == IMPACTS:
                 moment = began + (substep + course.middle) * h
                 came = resolve_all_impacts(
-                    near, motion, shapes, inverse, acting, Log(impacts, moment, account), span,
-                    course.start * span, course.end * span,
+                    near, motion, shapes, materials, inverse, acting, bounds, Log(impacts, moment, account),
+                    span, course.start * span, course.end * span, gravity.margin,
                 )  # fmt: skip
                 bounced += came
                 weighed = weighed and came == 0

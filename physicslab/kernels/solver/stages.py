@@ -14,8 +14,8 @@ from physicslab.kernels.arguments import (
     Near,
     Softness,
 )
-from physicslab.kernels.broad.near_pairs import activate, sort_scalar
-from physicslab.kernels.geometry.contact import find_contacts
+from physicslab.kernels.broad.near_pairs import list_near
+from physicslab.kernels.geometry.contact import AFTER_IMPACTS, GOES_ON, find_contacts
 from physicslab.kernels.geometry.shapes import Shapes
 from physicslab.kernels.joints.blocks import Joints
 from physicslab.kernels.near_counts import (
@@ -24,8 +24,6 @@ from physicslab.kernels.near_counts import (
     LEFT,
     LOGGED,
     LOWERED,
-    PROXIMITY,
-    RECORDED,
     ROUND,
     SCALAR,
     UNORDERED,
@@ -33,7 +31,7 @@ from physicslab.kernels.near_counts import (
 )
 from physicslab.kernels.solver import impulse
 from physicslab.kernels.solver.finer import SUNK, UNLIMITED
-from physicslab.kernels.solver.impact import ImpactWindow, resolve_impacts
+from physicslab.kernels.solver.impact import ImpactWindow, end_impacts, resolve_impacts
 from physicslab.kernels.solver.meet_again import any_swift, meet_again
 from physicslab.kernels.solver.separate import any_deep, separate
 from physicslab.kernels.solver.work import book_slots, book_work_of_contacts, note_velocities
@@ -57,16 +55,15 @@ def _solved(near: Near) -> Contacts:
 @always_inlined
 def find_touching(
     near: Near, motion: Motion, shapes: Shapes, materials: Materials, inverse: Inverse, bounds: Bounds,
-    first: bool, goes_on: bool, h: float, start: float, speculative_margin: float, substeps: int,
+    when: int, h: float, start: float, speculative_margin: float, substeps: int,
 ) -> None:  # fmt: skip
     """Find where wide contacts touch now, activate proximity pairs, then find where scalar ones touch.
 
-    The substep spans ``h`` seconds from ``start`` h before or after now. ``first`` marks the first substep of
-    a step of so many ``substeps``, and that it ``goes_on`` from another one of the same call;
-    ``speculative_margin`` is how far [m] the forces may bring two bodies together within it.
+    The substep spans ``h`` seconds from ``start`` h before or after now, and is one of so many ``substeps``
+    of a step: ``when`` in it is that of :func:`find_contacts`. ``speculative_margin`` is how far [m] the
+    forces may bring two bodies together within it.
     """
-    counts, manifolds, points, scalar = near.counts, near.manifolds, near.points, near.scalar
-    rest = 0.0
+    counts, first, rest = near.counts, when <= GOES_ON, 0.0
     if counts[WIDE_COUNT] > 0:
         rest = substeps - 1.0 if first else 0.0  # of wide contacts points are found once a step
         before = counts[SCALAR]
@@ -76,50 +73,53 @@ def find_touching(
         counts[WIDE_COUNT] -= came
         if came > 0:
             counts[UNORDERED] = 1
-    if counts[UNORDERED] != 0:
-        sort_scalar(manifolds, scalar, counts[SCALAR], len(motion.angle))
-        counts[UNORDERED] = 0
-    counts[PROXIMITY], counts[RECORDED], counts[SCALAR] = activate(
-        near.proximity, near.activation_distance, counts[PROXIMITY], manifolds, points, counts[RECORDED],
-        scalar, counts[SCALAR], near.entities, motion.position, motion.linear, h, speculative_margin,
-        near.touching,
-    )  # fmt: skip
+    list_near(near, motion, h, speculative_margin)
     counts[ACTIVE] = find_contacts(
-        near, counts[SCALAR], motion, shapes, materials, inverse, bounds, first, goes_on, h, start,
-        speculative_margin, rest,
+        near, counts[SCALAR], motion, shapes, materials, inverse, bounds, when, h, start, speculative_margin,
+        rest,
     )  # fmt: skip
 
 
 @always_inlined
 def resolve_all_impacts(
-    near: Near, motion: Motion, shapes: Shapes, inverse: Inverse, acting: Acting, log: Log, h: float,
-    start: float, end: float,
+    near: Near, motion: Motion, shapes: Shapes, materials: Materials, inverse: Inverse, acting: Acting,
+    bounds: Bounds, log: Log, h: float, start: float, end: float, speculative_margin: float,
 ) -> int:  # fmt: skip
     """Bounce what meets between ``start`` and ``end`` [s] from now; return how many impacts there were.
 
-    Wide contacts that this wakes take part. ``ROUND`` is 1 where a body is still swift after one.
+    Wide contacts that this wakes take part, and so do pairs that it throws together. ``ROUND`` is 1 where a
+    body is still swift after one.
     """
-    counts, impacts = near.counts, 0
+    counts, changed, impacts, listed, sweep = near.counts, near.angular_before, 0, 0, 0
     counts[LEFT] = 0
     # Without forces there are no piles.
     window = ImpactWindow(start, end, start - 2.0 * (end - start) if acting.any else -math.inf)
-    while counts[ACTIVE] > 0:
-        came, counts[LEFT], energetic, lowered = resolve_impacts(
+    for i in range(len(changed)):
+        changed[i] = -1.0
+    while counts[ACTIVE] > listed:
+        came, counts[LEFT], energetic, lowered, sweep = resolve_impacts(
             _contacts(near), motion, shapes, inverse, acting, log, counts[LOGGED], h, window, near.moments,
-            near.noted, near.angular_before,
+            near.noted, changed, listed, sweep,
         )  # fmt: skip
         impacts += came
         counts[ENERGETIC] += energetic
         counts[LOWERED] += lowered
         counts[LOGGED] += came if len(log.impacts) > 0 else 0
-        before = counts[ACTIVE]
+        listed = counts[ACTIVE]
         if came > 0 and counts[WIDE_COUNT] > 0:
             for slots in (near.discs, near.boxes):
                 wake(slots, near, motion, acting, inverse, h)
-        if counts[ACTIVE] == before:
-            break
-        counts[WIDE_COUNT] -= counts[ACTIVE] - before
-        counts[UNORDERED] = 1
+            counts[WIDE_COUNT] -= counts[ACTIVE] - listed
+            counts[UNORDERED] = 1 if counts[ACTIVE] > listed else counts[UNORDERED]
+        if came > 0:
+            counts[ACTIVE] = find_contacts(
+                near, counts[SCALAR], motion, shapes, materials, inverse, bounds, AFTER_IMPACTS, h, start / h,
+                speculative_margin, 0.0,
+            )  # fmt: skip
+    if impacts > 0:
+        end_impacts(_contacts(near), motion, near.noted, changed)
+    if listed > 0 and counts[LEFT] == 0:
+        impulse.follow_drift(_contacts(near), motion, end)
     counts[ROUND] = 1 if impacts > 0 and any_swift(near.moments) else 0
     return impacts
 

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from physicslab.components import Material, Transform, Velocity
 from physicslab.components.material import friction_of_pair
+from physicslab.contacts.islands import impulse_spans
 from physicslab.world import World
 
 _STILL = 1e-6
@@ -28,6 +29,7 @@ SAMPLE = np.dtype(
         ("speed", np.float64),  # of approach before the impulse [m/s]; 0 at rest
         ("slip", np.float64),  # speed along the surface [m/s]; infinite for an impact, which does not tell
         ("time", np.float64),  # of the impact, or now [s]
+        ("span", np.float64),  # time over which the impulses act [s]; 0 of an impact
     ]
 )
 """The impulses at one point of a contact."""
@@ -57,7 +59,7 @@ def resting_of(world: World) -> ContactSamples:
         points["normal_impulse"][chosen],
         points["tangent_impulse"][chosen],
     )
-    samples["time"] = world.time
+    samples["time"], samples["span"] = world.time, impulse_spans(world, pair)
     samples["slip"] = _slip_of(world, samples, row_a, row_b, points[chosen])
     _show_on_what_moves(world, samples, row_a, row_b)
     return samples

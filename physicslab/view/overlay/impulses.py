@@ -52,7 +52,7 @@ def draw_impulses(world: World, overlays: Overlays, written: Collection[int], on
     met = sorted(met, key=rank)[: LABELLED if len(impacts) <= CROWD else LABELLED_IN_CROWD]
     held = _strongest(of_written, np.ones(len(of_written)), overlays, False, on)
     chosen = sorted([*met, *held], key=rank)[:LABELLED]
-    return [Label(one.key, one.at, _words_of(one, world.contacts.impulse_dt)) for one in chosen]
+    return [Label(one.key, one.at, _words_of(one)) for one in chosen]
 
 
 def _seen(at: Points, size: tuple[int, int], covered: Sequence[Rect]) -> NDArray[np.bool_]:
@@ -159,9 +159,9 @@ def _strongest(
     return [_Candidate(much, key, place, touch, is_impact, slip) for much, key, place, touch, slip in every]
 
 
-def _words_of(one: _Candidate, impulse_dt: float) -> list[str]:
+def _words_of(one: _Candidate) -> list[str]:
     """Return the numbers of a contact in SI units, a line each; of what rests also the mean forces."""
-    sample, rate = one.sample, 1.0 / impulse_dt if impulse_dt > 0.0 and not one.is_impact else 0.0
+    sample, rate = one.sample, 1.0 / float(one.sample["span"]) if one.sample["span"] > 0.0 else 0.0
     lines = [f"impact at {quantity(float(sample['speed']), 'm/s')}"] if one.is_impact else []
     lines.append(f"normal {_impulse(float(sample['normal']), rate)}")
     if sample["friction"] > 0.0:
