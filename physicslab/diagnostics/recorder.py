@@ -58,8 +58,9 @@ def record(
         wanted = float(_EVERY.check(every))
         stride = max(1, math.ceil(wanted / length.dt - _LATE))
         if abs(stride - wanted / length.dt) > _LATE and stride < length.steps:
-            apart = f"instants are {stride * length.dt:g} s apart; simulation.dt = {wanted / stride:.9g} would help"
-            _log.warning("record: every = %g s is no whole number of steps: %s", wanted, apart)
+            apart, dt = stride * length.dt, wanted / stride
+            found = f"instants are {apart:g} s apart; simulation.dt = {dt:.9g} would help"
+            _log.warning("record: every = %g s is no whole number of steps: %s", wanted, found)
     world.synchronise()
     with world.active():
         names = body_names(world)
