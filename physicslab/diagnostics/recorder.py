@@ -59,8 +59,8 @@ def record(
         stride = max(1, math.ceil(wanted / length.dt - _LATE))
         if abs(stride - wanted / length.dt) > _LATE and stride < length.steps:
             apart, dt = stride * length.dt, wanted / stride
-            found = f"instants are {apart:g} s apart; simulation.dt = {dt:.9g} would help"
-            _log.warning("record: every = %g s is no whole number of steps: %s", wanted, found)
+            words = f"instants are {apart:g} s apart; simulation.dt = {dt:.9g} would help"
+            _log.warning("record: every = %g s is no whole number of steps: %s", wanted, words)
     world.synchronise()
     with world.active():
         names = body_names(world)
