@@ -385,6 +385,16 @@ def test_a_pulley_is_drawn_by_two_drags_or_four_clicks(desk: Desk) -> None:
             desk.world.remove(entity)
 
 
+def test_a_pulley_may_begin_at_its_free_end(desk: Desk) -> None:
+    """It was refused after four points."""
+    body = box(desk.world, (0.0, 0.0))
+    clicks(desk, "pulley", (2.0, 0.5), (2.0, 2.0), (0.0, 0.0), (0.0, 2.0))
+    pulley = made(desk, Pulley)
+    assert (pulley.a, pulley.b) == (body, None) and tuple(pulley.wheel_a) == pytest.approx(
+        (0.0, 2.0), abs=0.01
+    )
+
+
 def test_a_gear_couples_two_pinned_wheels_by_their_radii(desk: Desk) -> None:
     for x, radius in ((0.0, 0.8), (1.2, 0.4)):
         circle(desk.world, (x, 0.0), radius=radius)

@@ -208,6 +208,22 @@ def test_what_rests_is_recorded_without_steps_of_it(
     assert bits(world) == bits(other) and (run.motion[-20:] == run.motion[-1]).all()
 
 
+def test_instants_that_cannot_be_as_near_as_asked_for_are_told(caplog: pytest.LogCaptureFixture) -> None:
+    """Of a millisecond there was one a step of 17, without a word."""
+    world = thrown()
+    world.simulation = SimulationConfig(dt=0.02)
+    for every, apart, dt in (
+        (0.001, 0.02, "0.001"),
+        (0.05, 0.06, "0.0166666667"),
+        (0.04, 0, ""),
+        (2.0, 0, ""),
+    ):
+        caplog.clear()
+        world.record(1.0, every=every)
+        what = f"record: every = {every} s is no whole number of steps: instants are {apart} s apart"
+        assert caplog.messages == ([f"{what}; simulation.dt = {dt} would help"] if apart else [])
+
+
 @pytest.mark.parametrize(("seconds", "every"), [(0.305, None), (0.3, 0.04), (0.30001, 0.1), (0.001, 1.0)])
 def test_a_run_that_is_no_multiple_of_its_steps_ends_with_its_end(
     seconds: float, every: float | None

@@ -55,7 +55,12 @@ def record(
     length = run_length(world, seconds, None)
     stride = 1
     if every is not None:
-        stride = max(1, math.ceil(_EVERY.check(every) / length.dt - _LATE))
+        wanted = float(_EVERY.check(every))
+        stride = max(1, math.ceil(wanted / length.dt - _LATE))
+        if abs(stride - wanted / length.dt) > _LATE and stride < length.steps:
+            apart, dt = stride * length.dt, wanted / stride
+            words = f"instants are {apart:g} s apart; simulation.dt = {dt:.9g} would help"
+            _log.warning("record: every = %g s is no whole number of steps: %s", wanted, words)
     world.synchronise()
     with world.active():
         names = body_names(world)
