@@ -12,9 +12,10 @@ from plotting import ball_of, drawn_lines, graph_of, pause
 
 from physicslab import load_scene
 from physicslab.components import Graph, GraphLine, Velocity
+from physicslab.files import replace
 from physicslab.history import Spawn
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
-from physicslab.view.controls import dashboard_actions, saving
+from physicslab.view.controls import dashboard_actions
 from physicslab.view.controls.lesson_actions import choose_language
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.record import line_to_show
@@ -86,7 +87,7 @@ def test_a_full_disk_is_one_plain_sentence(desk: Desk, monkeypatch: pytest.Monke
     def full(path: Path, content: bytes) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(saving, "create_file", full)
+    monkeypatch.setattr(replace, "create_file", full)
     ball_of(desk)
     tap(desk, "m")
     desk.window.do_next(dashboard_actions.save_table, graph_of(desk))
