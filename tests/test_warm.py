@@ -3,6 +3,7 @@
 import math
 import os
 import shutil
+import signal
 import subprocess
 import sys
 import time
@@ -71,6 +72,27 @@ def test_every_kernel_is_given_out_once_and_the_cache_is_marked(mark: Path, work
         progress = wait_for(warmup)
     assert progress.done == progress.total == len(load_all()) > 20
     assert is_warm() and mark.exists()
+
+
+@pytest.mark.skipif(os.name == "nt", reason="there a program is ended without signals")
+def test_a_worker_that_is_ended_while_it_compiles_says_nothing(tmp_path: Path) -> None:
+    environment = {**os.environ, "PHYSICSLAB_KERNELS": str(tmp_path)}
+    with subprocess.Popen(
+        own_command("kernels", WORKER),
+        env=environment,
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    ) as worker:
+        assert worker.stdin is not None and worker.stdout is not None and worker.stderr is not None
+        print("physicslab.kernels.motion.clear", file=worker.stdin, flush=True)
+        assert worker.stdout.readline()
+        print("physicslab.kernels.solver.soft.advance", file=worker.stdin, flush=True)
+        time.sleep(0.5)
+        worker.terminate()
+        assert worker.wait(20.0) == -signal.SIGTERM
+        assert worker.stderr.read() == ""
 
 
 def test_a_worker_that_fails_ends_the_wait_without_the_mark(mark: Path) -> None:

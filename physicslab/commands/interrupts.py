@@ -75,3 +75,11 @@ def interrupts_kept() -> Iterator[None]:
         sys.unraisablehook = before
         for number, handler in handlers.items():
             signal.signal(number, handler)
+
+
+def end_at_once() -> None:
+    """Have such signals kill the program as they do without it: a compiler cannot be interrupted halfway."""
+    for name in _ENDING:
+        number = getattr(signal, name, None)
+        if number is not None and callable(signal.getsignal(number)):
+            signal.signal(number, signal.SIG_DFL)

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import physicslab
 from physicslab.commands import FAILED, CommandError, tell
+from physicslab.commands.interrupts import end_at_once
 from physicslab.commands.output import Output
 from physicslab.commands.progress import Progress
 from physicslab.ecs.text import printable
@@ -27,6 +28,7 @@ _WARNING = (
 def execute(arguments: Namespace) -> int:
     """Compile all kernels, or write or read an archive of them."""
     if arguments.worker:
+        end_at_once()
         return work()
     if (arguments.action is None) != (arguments.file is None):
         raise CommandError(f"kernels {arguments.action}: FILE is missing (see physicslab kernels --help)")
