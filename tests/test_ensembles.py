@@ -394,7 +394,7 @@ def test_a_sweep_of_which_every_run_failed_has_failed(capsys: pytest.CaptureFixt
     command = ["sweep", "drop", "--measure", "time", "--seconds", ".1", "--workers", "1"]
     assert main([*command, "--vary", f"{M}=1:2:2", "--until", "ball.y > 99"]) == 1
     out, err = capsys.readouterr()
-    assert "2 of them with a failure" in out and err == "physicslab: drop: no run is without a failure\n"
+    assert "2 of them with a failure" in out and err == "physicslab: drop: every run failed\n"
 
 
 def test_parts_of_another_sweep_are_not_taken(tmp_path: Path) -> None:

@@ -59,7 +59,7 @@ def execute(arguments: Namespace) -> int:
         picture.write(result.map())
     _tell(result, label, output)
     if len(result.failures) == len(result):
-        raise CommandError(f"{label}: no run is without a failure", FAILED)
+        raise CommandError(f"{label}: every run failed", FAILED)
     return 0
 
 
