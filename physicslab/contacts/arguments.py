@@ -5,6 +5,7 @@ import numpy as np
 from physicslab.components import Material, Transform, Velocity
 from physicslab.kernels import Plain
 from physicslab.kernels.arguments import ActingTuple, Bounds, Inverse, Materials, Motion, Near, Softness
+from physicslab.kernels.broad.leaving import blank_boxes
 from physicslab.kernels.geometry.shapes import ShapesTuple
 from physicslab.kernels.joints.blocks import Joints
 from physicslab.kernels.records import APART, CONSTRAINT, CONSTRAINT_POINT
@@ -125,7 +126,7 @@ def do_stage(
     *_, impacts, _, contacts.impulse_dt = soft.advance(
         1, last, 0, plan, course, -1, motion_of(state), _NOTHING, shapes_of(state), materials_of(state),
         inverse, state.bodies.sub_integrated, acting_in(state), gravity, packed, (_NOTHING, rows), sleepers,
-        (0.0, 0.0), np.zeros((8, 0)), bounds_of(state), near, joints_in(state), contacts.opened, softness,
+        (0.0, 0.0), blank_boxes(0), bounds_of(state), near, joints_in(state), contacts.opened, softness,
         contacts.impulse_dt, contacts.step_log, np.zeros(soft.COSTS, np.int64),
         NOTHING_SAMPLED,
     )  # fmt: skip

@@ -24,6 +24,7 @@ from physicslab.kernels import Plain
 from physicslab.kernels.arguments import Plan, Softness
 from physicslab.kernels.broad import grid, leaving, near_pairs
 from physicslab.kernels.broad.fat_boxes import fat_boxes
+from physicslab.kernels.broad.leaving import blank_boxes
 from physicslab.kernels.clock import time_after
 from physicslab.kernels.loading import direct_entry, working_ns
 from physicslab.kernels.solver import soft
@@ -256,8 +257,8 @@ class Substeps:
         state.collisions += impacts - finished_impacts
         self._nanoseconds += time.perf_counter_ns() - began
         self._schedule.defer(self._settle)
-        if why != soft.ALL:
-            self._held = None  # arrays may be replaced where it has come back
+        if why not in (soft.ALL, soft.PAIRS_STALE):
+            self._held = None  # arrays may be replaced where it has come back; a list says so
         return why, done, substep, part
 
     def _finish(self, state: State, steps: int, span: Span) -> None:
@@ -321,7 +322,7 @@ class Substeps:
             motion_of(state), state.checkpoint.numbers, shapes_of(state), materials_of(state),
             inverse_in(state), bodies.sub_integrated, acting_in(state),
         )  # fmt: skip
-        laws = (physics.linear_damping, physics.angular_damping), np.zeros((8, 0)), bounds_of(state)
+        laws = (physics.linear_damping, physics.angular_damping), blank_boxes(0), bounds_of(state)
         return columns, gravity, laws, np.zeros_like(state.sleep.asleep)
 
     # ---- what they cost ------------------------------------------------------------------------------------

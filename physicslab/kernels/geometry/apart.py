@@ -8,13 +8,18 @@ together have come as far. To look again earlier would find the same, so that no
 import math
 
 from physicslab.kernels import Vectors, inlined
-from physicslab.kernels.arguments import Motion, Near
-from physicslab.kernels.geometry.shapes import Shapes
+from physicslab.kernels.arguments import Bounds, Motion, Near
+from physicslab.kernels.geometry.margins import ACTIVATION_RATIO, touching_distance
+from physicslab.kernels.geometry.shapes import Shapes, half_extents
 from physicslab.kernels.near_counts import FOLLOWED, RECORDED
+from physicslab.kernels.records import Manifold
 
 LAST_X, LAST_Y, LAST_ANGLE, PATH, REACH = range(5)
 """The rows of ``Near.travels``: where each body last was [m, rad]; how far any point of it can have come in
 the call [m]; that, and how far it comes at most in the substep at hand."""
+SINCE, NEXT = range(2)
+"""The columns of ``Near.moments``: when a swift body had its last impact; in the other is noted which angle
+each body has before impacts, and then when it meets another next."""
 _WORTH_IT = 4
 """Number of bodies a pair that is apart from which all are followed."""
 _TOUCHING, _UNKNOWN = 0xFFFFFFFF, 0xFFFFFFFE
@@ -86,7 +91,36 @@ def note_touching(near: Near, p: int) -> None:
 
 
 @inlined
-def may_be_thrown_together(near: Near, p: int) -> bool:
+def _is_sure_to_be_listed(
+    manifold: Manifold, near: Near, shapes: Shapes, bounds: Bounds, speculative_margin: float
+) -> bool:  # fmt: skip
+    """Whether a pair has a record whenever near pairs were listed: its bodies were near before the impacts.
+
+    Others may have one from a list that was made for longer: that no bit depends on lists, these do not
+    count. Nor does what is near a segment of a chain, which is listed by its box.
+    """
+    a, b, wall = manifold.a, manifold.b, manifold.wall
+    places, angles = near.linear_before, near.moments[:, NEXT]
+    reach, radius, thin = shapes.reach, shapes.radius, shapes.thin
+    width_b, height_b = half_extents(shapes, b, angles[b])
+    margin = touching_distance(reach[b], radius[b], thin[b], speculative_margin)
+    if wall >= 0:
+        away = places[b, wall % 2] - bounds.walls[wall]
+        clear = (away if wall < 2 else -away) - (height_b if wall % 2 else width_b)
+        return bool(clear <= margin)
+    x, y = places[b, 0] - places[a, 0], places[b, 1] - places[a, 1]
+    within = ACTIVATION_RATIO * (reach[a] + reach[b])
+    if wall < -1 or x * x + y * y > within * within:
+        return False
+    width_a, height_a = half_extents(shapes, a, angles[a])
+    margin += touching_distance(reach[a], radius[a], thin[a], speculative_margin)
+    return bool(abs(x) <= width_a + width_b + margin and abs(y) <= height_a + height_b + margin)
+
+
+@inlined
+def may_be_thrown_together(
+    near: Near, p: int, shapes: Shapes, bounds: Bounds, speculative_margin: float
+) -> bool:  # fmt: skip
     """Whether a pair without points has a body that an impact has changed, and none that it has left swift.
 
     Swift ones are swept again from their impact on (:mod:`physicslab.kernels.solver.meet_again`).
@@ -97,5 +131,13 @@ def may_be_thrown_together(near: Near, p: int) -> bool:
         a, b = manifold.a if manifold.count == 0 else _TOUCHING, manifold.b
     if a == _TOUCHING:
         return False
-    hit = max(changed[a], changed[b]) >= 0.0
-    return bool(hit and max(moments[a, 0], moments[b, 0]) == -math.inf)
+    hit = max(changed[a], changed[b]) >= 0.0 and max(moments[a, SINCE], moments[b, SINCE]) == -math.inf
+    return bool(hit and _is_sure_to_be_listed(near.manifolds[p], near, shapes, bounds, speculative_margin))
+
+
+@inlined
+def note_places(near: Near, motion: Motion) -> None:
+    """Note where bodies are before impacts, as :func:`may_be_thrown_together` needs it."""
+    for i in range(len(motion.angle)):
+        near.linear_before[i, 0], near.linear_before[i, 1] = motion.position[i, 0], motion.position[i, 1]
+        near.moments[i, NEXT] = motion.angle[i]
