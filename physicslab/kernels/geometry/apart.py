@@ -7,7 +7,7 @@ together have come as far. To look again earlier would find the same, so that no
 
 import math
 
-from physicslab.kernels import Vectors, inlined
+from physicslab.kernels import Vectors, always_inlined, inlined
 from physicslab.kernels.arguments import Bounds, Motion, Near
 from physicslab.kernels.geometry.margins import ACTIVATION_RATIO, touching_distance
 from physicslab.kernels.geometry.shapes import Shapes, half_extents
@@ -91,7 +91,7 @@ def note_touching(near: Near, p: int) -> None:
 
 
 @inlined
-def _is_sure_to_be_listed(
+def is_sure_to_be_listed(
     manifold: Manifold, near: Near, shapes: Shapes, bounds: Bounds, speculative_margin: float
 ) -> bool:  # fmt: skip
     """Whether a pair has a record whenever near pairs were listed: its bodies were near before the impacts.
@@ -100,9 +100,9 @@ def _is_sure_to_be_listed(
     count. Nor does what is near a segment of a chain, which is listed by its box.
     """
     a, b, wall = manifold.a, manifold.b, manifold.wall
-    places, angles = near.linear_before, near.moments[:, NEXT]
+    places, noted = near.linear_before, near.moments
     reach, radius, thin = shapes.reach, shapes.radius, shapes.thin
-    width_b, height_b = half_extents(shapes, b, angles[b])
+    width_b, height_b = half_extents(shapes, b, noted[b, NEXT])
     margin = touching_distance(reach[b], radius[b], thin[b], speculative_margin)
     if wall >= 0:
         away = places[b, wall % 2] - bounds.walls[wall]
@@ -112,15 +112,13 @@ def _is_sure_to_be_listed(
     within = ACTIVATION_RATIO * (reach[a] + reach[b])
     if wall < -1 or x * x + y * y > within * within:
         return False
-    width_a, height_a = half_extents(shapes, a, angles[a])
+    width_a, height_a = half_extents(shapes, a, noted[a, NEXT])
     margin += touching_distance(reach[a], radius[a], thin[a], speculative_margin)
     return bool(abs(x) <= width_a + width_b + margin and abs(y) <= height_a + height_b + margin)
 
 
-@inlined
-def may_be_thrown_together(
-    near: Near, p: int, shapes: Shapes, bounds: Bounds, speculative_margin: float
-) -> bool:  # fmt: skip
+@always_inlined
+def may_be_thrown_together(near: Near, p: int) -> bool:
     """Whether a pair without points has a body that an impact has changed, and none that it has left swift.
 
     Swift ones are swept again from their impact on (:mod:`physicslab.kernels.solver.meet_again`).
@@ -131,13 +129,13 @@ def may_be_thrown_together(
         a, b = manifold.a if manifold.count == 0 else _TOUCHING, manifold.b
     if a == _TOUCHING:
         return False
-    hit = max(changed[a], changed[b]) >= 0.0 and max(moments[a, SINCE], moments[b, SINCE]) == -math.inf
-    return bool(hit and _is_sure_to_be_listed(near.manifolds[p], near, shapes, bounds, speculative_margin))
+    hit = max(changed[a], changed[b]) >= 0.0
+    return bool(hit and max(moments[a, SINCE], moments[b, SINCE]) == -math.inf)
 
 
 @inlined
 def note_places(near: Near, motion: Motion) -> None:
-    """Note where bodies are before impacts, as :func:`may_be_thrown_together` needs it."""
+    """Note where bodies are before impacts, as :func:`is_sure_to_be_listed` needs it."""
     for i in range(len(motion.angle)):
         near.linear_before[i, 0], near.linear_before[i, 1] = motion.position[i, 0], motion.position[i, 1]
         near.moments[i, NEXT] = motion.angle[i]

@@ -365,7 +365,9 @@ def find_contacts(
     for number in range(count):
         p = near.scalar[number]
         if again:
-            if not apart.may_be_thrown_together(near, p, shapes, bounds, speculative_margin):
+            if not apart.may_be_thrown_together(near, p):
+                continue
+            if not apart.is_sure_to_be_listed(near.manifolds[p], near, shapes, bounds, speculative_margin):
                 continue
         elif apart.stays_apart(near, p):
             continue
