@@ -61,7 +61,7 @@ def near_in(state: State) -> Plain[Near]:
     if len(contacts.rotations) != rows:
         contacts.rotations = np.full((rows, 3), np.nan)
         contacts.linear_before, contacts.angular_before = np.zeros((rows, 2)), np.zeros(rows)
-        contacts.moments, contacts.travels = np.full((rows, 2), -np.inf), np.zeros((5, rows))
+        contacts.moments, contacts.travels = np.full((rows, 7), -np.inf), np.zeros((5, rows))
         contacts.stirred = np.zeros(rows, np.int64)
     if len(contacts.noted) < len(contacts.points):
         contacts.noted = np.zeros((len(contacts.points), 4))

@@ -8,7 +8,7 @@ import math
 
 from physicslab.kernels import Numbers, Plain, Vectors, inlined, kernel
 from physicslab.kernels.arguments import Motion
-from physicslab.kernels.geometry.margins import CORNERWISE, touching_distance
+from physicslab.kernels.geometry.margins import touching_ahead, touching_distance
 from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple, half_extents, named_shapes
 
 HIT_SHARE = 1.0
@@ -27,9 +27,8 @@ def _reaches(
 
     It goes on by (ux, uy) [m], and has turned by ``turned`` [rad] then.
     """
-    ahead = math.sqrt(ux * ux + uy * uy) * (CORNERWISE if reach > radius else 1.0)
-    needed = touching_distance(reach, radius, thin, speculative_margin)
-    return moved + ahead + min(turned, 1.0) * (reach - radius) + needed
+    needed = touching_ahead(ux, uy, reach, radius, thin, speculative_margin)
+    return moved + min(turned, 1.0) * (reach - radius) + needed
 
 
 @inlined

@@ -9,7 +9,7 @@ import math
 
 from physicslab.kernels import Vectors, always_inlined, inlined
 from physicslab.kernels.arguments import Bounds, Motion, Near
-from physicslab.kernels.geometry.margins import ACTIVATION_RATIO, touching_distance
+from physicslab.kernels.geometry.margins import ACTIVATION_RATIO, CORNERWISE, touching_ahead
 from physicslab.kernels.geometry.shapes import Shapes, half_extents
 from physicslab.kernels.near_counts import FOLLOWED, RECORDED
 from physicslab.kernels.records import Manifold
@@ -17,9 +17,9 @@ from physicslab.kernels.records import Manifold
 LAST_X, LAST_Y, LAST_ANGLE, PATH, REACH = range(5)
 """The rows of ``Near.travels``: where each body last was [m, rad]; how far any point of it can have come in
 the call [m]; that, and how far it comes at most in the substep at hand."""
-SINCE, NEXT = range(2)
-"""The columns of ``Near.moments``: when a swift body had its last impact; in the other is noted which angle
-each body has before impacts, and then when it meets another next."""
+SINCE, NEXT, X, Y, ANGLE, VX, VY = range(7)
+"""The columns of ``Near.moments``: when a swift body had its last impact, and when it meets another next; the
+place, the angle and the velocity of each body before the impacts of the substep."""
 _WORTH_IT = 4
 """Number of bodies a pair that is apart from which all are followed."""
 _TOUCHING, _UNKNOWN = 0xFFFFFFFF, 0xFFFFFFFE
@@ -91,29 +91,37 @@ def note_touching(near: Near, p: int) -> None:
 
 
 @inlined
+def _touching_ahead(before: Vectors, i: int, shapes: Shapes, h: float, speculative_margin: float) -> float:
+    """Return how far [m] beyond its upright box body i might have had points, before the impacts."""
+    ux, uy = before[i, VX] * h, before[i, VY] * h
+    return touching_ahead(ux, uy, shapes.reach[i], shapes.radius[i], shapes.thin[i], speculative_margin)
+
+
+@inlined
 def is_sure_to_be_listed(
-    manifold: Manifold, near: Near, shapes: Shapes, bounds: Bounds, speculative_margin: float
+    manifold: Manifold, near: Near, shapes: Shapes, bounds: Bounds, h: float, speculative_margin: float
 ) -> bool:  # fmt: skip
-    """Whether a pair has a record whenever near pairs were listed: its bodies were near before the impacts.
+    """Whether a pair has a record whenever near pairs were listed, as it might have met before the impacts.
 
     Others may have one from a list that was made for longer: that no bit depends on lists, these do not
     count. Nor does what is near a segment of a chain, which is listed by its box.
     """
-    a, b, wall = manifold.a, manifold.b, manifold.wall
-    places, noted = near.linear_before, near.moments
-    reach, radius, thin = shapes.reach, shapes.radius, shapes.thin
-    width_b, height_b = half_extents(shapes, b, noted[b, NEXT])
-    margin = touching_distance(reach[b], radius[b], thin[b], speculative_margin)
+    a, b, wall, before = manifold.a, manifold.b, manifold.wall, near.moments
+    width_b, height_b = half_extents(shapes, b, before[b, ANGLE])
+    margin = _touching_ahead(before, b, shapes, h, speculative_margin)
     if wall >= 0:
-        away = places[b, wall % 2] - bounds.walls[wall]
+        away = before[b, X + wall % 2] - bounds.walls[wall]
         clear = (away if wall < 2 else -away) - (height_b if wall % 2 else width_b)
         return bool(clear <= margin)
-    x, y = places[b, 0] - places[a, 0], places[b, 1] - places[a, 1]
-    within = ACTIVATION_RATIO * (reach[a] + reach[b])
+    x, y = before[b, X] - before[a, X], before[b, Y] - before[a, Y]
+    moved = (abs(before[b, VX] - before[a, VX]) + abs(before[b, VY] - before[a, VY])) * h
+    within = ACTIVATION_RATIO * (shapes.reach[a] + shapes.reach[b]) + CORNERWISE * (
+        moved + speculative_margin
+    )
     if wall < -1 or x * x + y * y > within * within:
         return False
-    width_a, height_a = half_extents(shapes, a, noted[a, NEXT])
-    margin += touching_distance(reach[a], radius[a], thin[a], speculative_margin)
+    width_a, height_a = half_extents(shapes, a, before[a, ANGLE])
+    margin += _touching_ahead(before, a, shapes, h, speculative_margin)
     return bool(abs(x) <= width_a + width_b + margin and abs(y) <= height_a + height_b + margin)
 
 
@@ -134,8 +142,9 @@ def may_be_thrown_together(near: Near, p: int) -> bool:
 
 
 @inlined
-def note_places(near: Near, motion: Motion) -> None:
-    """Note where bodies are before impacts, as :func:`is_sure_to_be_listed` needs it."""
-    for i in range(len(motion.angle)):
-        near.linear_before[i, 0], near.linear_before[i, 1] = motion.position[i, 0], motion.position[i, 1]
-        near.moments[i, NEXT] = motion.angle[i]
+def note_motion(moments: Vectors, motion: Motion) -> None:
+    """Note where bodies are, and how they move, before impacts, as :func:`is_sure_to_be_listed` needs it."""
+    for i in range(len(moments)):
+        moments[i, X], moments[i, Y] = motion.position[i, 0], motion.position[i, 1]
+        moments[i, ANGLE] = motion.angle[i]
+        moments[i, VX], moments[i, VY] = motion.linear[i, 0], motion.linear[i, 1]

@@ -367,7 +367,7 @@ def find_contacts(
         if again:
             if not apart.may_be_thrown_together(near, p):
                 continue
-            if not apart.is_sure_to_be_listed(near.manifolds[p], near, shapes, bounds, speculative_margin):
+            if not apart.is_sure_to_be_listed(near.manifolds[p], near, shapes, bounds, h, speculative_margin):
                 continue
         elif apart.stays_apart(near, p):
             continue

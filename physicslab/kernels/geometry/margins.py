@@ -36,3 +36,12 @@ def touching_distance(reach: float, radius: float, thickness: float, speculative
     if reach > radius:
         share = _BOX_SHARE * (2.0 * thickness) + _TURN_SHARE * reach
     return share + speculative_margin
+
+
+@inlined
+def touching_ahead(
+    ux: float, uy: float, reach: float, radius: float, thickness: float, speculative_margin: float
+) -> float:  # fmt: skip
+    """Return the same for one that goes on by (ux, uy) [m]."""
+    ahead = math.sqrt(ux * ux + uy * uy) * (CORNERWISE if reach > radius else 1.0)
+    return ahead + touching_distance(reach, radius, thickness, speculative_margin)
