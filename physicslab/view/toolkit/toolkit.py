@@ -357,7 +357,7 @@ class Walk:
         return names[walked % len(names)] if names else ""
 
     def follow(self, event: pygame.Event) -> None:
-        """Begin where Tab or an arrow leaves a field, and end at a click or Esc; before panels take the event.
+        """Begin where Tab or an arrow leaves a field, and end at a click or Esc; before panels take it.
 
         Enter in a field gives the keys back, too, where they came to the panel by a field alone.
         """
