@@ -201,6 +201,7 @@ class Hand:
         transform, velocity = world.component(entity, Transform), world.component(entity, Velocity)
         grip = (place - transform.position).rotated(-transform.angle)
         self._before, self._loose_at = (velocity.linear, velocity.angular), None
+        world.synchronise()
         yields = world.has(entity, Mass) and is_joined(world, world.entity_index.row_of[entity])
         if not yields:
             self._set(world, entity, Velocity, "linear", Vector2())
