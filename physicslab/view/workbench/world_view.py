@@ -206,9 +206,9 @@ class WorldView:
                 return
         for joint in joint_states(world) if found is not None else ():
             if joint.entity == found:
-                words = f"{plain_kind(joint.kind)}: {quantity(joint.force.magnitude, 'N')}"
-                if joint.torque:
-                    words += f", {quantity(joint.torque, 'N m')}"
+                loads = [quantity(joint.force.magnitude, "N")] if joint.has_force else []
+                loads += [quantity(joint.torque, "N m")] if joint.has_torque else []
+                words = f"{plain_kind(joint.kind)}: {', '.join(loads)}"
                 marks.draw_selection(world, (joint.entity,), on)
                 marks.draw_reading(words, at, on, window.framing.room())
 
