@@ -344,6 +344,54 @@ def test_unlike_masses_are_not_apart_from_fewer_others() -> None:
     assert world.islands.why_one == "with soft contacts islands are advanced together"
 
 
+def pile(world: World, x: float, count: int) -> None:
+    for n in range(count):
+        box(world, (x + 0.1 * (n % 2), 0.3 + 0.5 * n), width=0.6, height=0.5)
+
+
+@pytest.mark.parametrize(
+    ("counts", "apart", "why"),
+    [
+        ((6, 6, 6), [6, 6, 6], ""),
+        ((10, 10, 10, 10), [], "rigid contacts in all islands would take longer than in one of 12 bodies"),
+        ((3, 10, 10), [3, 20], ""),
+        ((12, 1), [12, 1], ""),
+    ],
+)
+def test_rigid_islands_together_take_no_longer_than_one_of_twelve_bodies(
+    counts: tuple[int, ...], apart: list[int], why: str
+) -> None:
+    """Four piles of ten boxes took 58 ms a step; as one world with soft contacts they take 0.13."""
+    world = World()
+    floor(world)
+    for number, count in enumerate(counts):
+        pile(world, number * FAR, count)
+    world.synchronise()
+    assert sizes(world) == apart
+    assert world.islands.why_one == why
+    assert [part.rigid_contacts for part in world.parts] == [n <= 12 for n in sorted(apart or [40])[::-1]]
+
+
+def test_islands_that_fly_between_impacts_are_apart_however_many() -> None:
+    world = World()
+    floor(world)
+    for n in range(4):
+        for k in range(8):
+            disc(world, n * FAR + 1.5 * k, 3.0 + 0.3 * k)
+    world.synchronise()
+    assert sizes(world) == [8] * 4
+    assert [part.plan.collisions for part in world.parts] == ["exact"] * 4
+
+
+def test_rigid_contacts_that_are_asked_for_are_so_in_every_island() -> None:
+    world = World(simulation=SimulationConfig(contacts="rigid"))
+    floor(world)
+    for n in range(3):
+        pile(world, n * FAR, 11)
+    world.synchronise()
+    assert sizes(world) == [11] * 3
+
+
 def test_planets_are_one_island_and_the_reason_is_told() -> None:
     world = World(physics=PhysicsConfig(gravity_mode="planet"))
     disc(world, 0.0, 0.0)

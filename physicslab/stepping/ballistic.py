@@ -33,13 +33,8 @@ def why_not_exact(state: State, schedule: Schedule) -> str | None:
 
     Between impacts a body must move under a constant acceleration, and nothing but a disc may turn.
     """
-    if state.simulation.integrator not in ("auto", "exact"):
-        return sentence("other_method_asked", method=state.simulation.integrator)
-    reason = _why_not_ballistic(state, schedule)
-    if reason is not None:
+    if (reason := why_never_exact(state, schedule)) is not None:
         return reason
-    if state.physics.linear_damping > 0.0 or state.physics.angular_damping > 0.0:
-        return sentence("damped")
     if len(state.batch(Held)):
         return sentence("held")
     if (nowhere := why_nowhere(state)) is not None:
@@ -52,6 +47,16 @@ def why_not_exact(state: State, schedule: Schedule) -> str | None:
     if count_pairs(state, linked=True) > MAX_PAIRS:
         return sentence("many_pairs", limit=MAX_PAIRS)
     return None
+
+
+def why_never_exact(state: State, schedule: Schedule) -> str | None:
+    """Return why the times of impacts cannot be located whatever the bodies are, or ``None``."""
+    if state.simulation.integrator not in ("auto", "exact"):
+        return sentence("other_method_asked", method=state.simulation.integrator)
+    if (reason := _why_not_ballistic(state, schedule)) is not None:
+        return reason
+    damped = state.physics.linear_damping > 0.0 or state.physics.angular_damping > 0.0
+    return sentence("damped") if damped else None
 
 
 def _why_not_ballistic(state: State, schedule: Schedule) -> str | None:

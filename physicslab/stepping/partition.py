@@ -5,19 +5,20 @@ same whatever there is elsewhere.
 """
 
 import math
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Drag, Mass, Shape, Transform, Velocity
+from physicslab.components import Drag, Mass, Material, Shape, Transform, Velocity
 from physicslab.ecs.sentences import sentence
 from physicslab.kernels.broad.clusters import label_clusters
 from physicslab.kernels.broad.island_gaps import steps_apart
 from physicslab.kernels.solver.impulse import HEAVY_RATIO
 from physicslab.state.state import State
-from physicslab.stepping.ballistic import CONTACT_STEP
+from physicslab.stepping.ballistic import CONTACT_STEP, turning_rows, why_never_exact
 from physicslab.stepping.contact_model import why_all_soft
 from physicslab.systems.accelerate import AccelerateSystem
 from physicslab.systems.integrate import why_nowhere
@@ -126,34 +127,57 @@ def groups_of(state: State, schedule: Schedule, rows: Rows) -> Partition:
     if len(groups) == 1:
         return Partition((rows,), sentence("all_near"))
     soft = why_all_soft(state, schedule) is not None
-    own = _advanced_apart(state, schedule, groups, soft=soft)
+    most = 0 if soft else _most_apart(state, schedule, groups)
+    own = _advanced_apart(state, schedule, groups, most)
     if len(own) > MAX_ISLANDS:
         return Partition((rows,), sentence("many_islands", limit=MAX_ISLANDS))
     if len(own) == 1:
-        together = sentence("islands_all_soft") if soft else sentence("large_islands", limit=MAX_BODIES)
-        return Partition((rows,), together)
+        why = "islands_all_soft" if soft else "large_islands" if most == MAX_BODIES else "costly_islands"
+        return Partition((rows,), sentence(why) if soft else sentence(why, limit=MAX_BODIES))
     return Partition(tuple(sorted(own, key=lambda group: int(group[0]))))
 
 
+def _most_apart(state: State, schedule: Schedule, groups: Sequence[Rows]) -> int:
+    """Return up to how many bodies islands are apart that may have rigid contacts: ``MAX_BODIES``, or fewer.
+
+    A step of these takes as long as the cube of their number, up to 20 ms: all islands together are to take
+    no longer than one of ``MAX_BODIES``, unless rigid ones are asked for. Those that may fly in closed form
+    between impacts take next to none.
+    """
+    if state.simulation.contacts == "rigid":
+        return MAX_BODIES
+    flies = np.zeros(len(state.entity_index), np.bool_)
+    if why_never_exact(state, schedule) is None:
+        flies = state.table(Material)["restitution"] > 0.0
+        flies[turning_rows(state)] = False
+    shaped, cost, most = state.table(Shape).present, 0, 0
+    sizes = Counter(int(np.count_nonzero(shaped[group])) for group in groups if not flies[group].all())
+    for size, count in sorted(sizes.items()):
+        cost += count * size**3 if size <= MAX_BODIES else 0
+        if cost > MAX_BODIES**3:
+            return most
+        most = size
+    return MAX_BODIES
+
+
 def _advanced_apart(
-    state: State, schedule: Schedule, groups: Sequence[Rows], *, soft: bool
+    state: State, schedule: Schedule, groups: Sequence[Rows], most: int
 ) -> list[Rows]:  # fmt: skip
     """Return islands, of which those are together that would not be advanced better on their own.
 
-    These are large ones; where all contacts are ``soft``, also small ones that can touch something. Those of
-    very unlike masses, which may need more substeps than others, are then together by themselves, unless they
-    are most bodies.
+    These are those of more than ``most`` bodies that can touch something. Where none is better off alone,
+    those of very unlike masses, which may need more substeps than others, are together by themselves, unless
+    they are most bodies.
     """
     shaped = state.table(Shape).present
     own, loaded, rest = list[Rows](), list[Rows](), list[Rows]()
     for group in groups:
         touching = np.count_nonzero(shaped[group])
-        if touching > MAX_BODIES:
-            rest.append(group)
-        elif touching < len(group) or not soft:
+        if touching <= most or (touching < len(group) and touching <= MAX_BODIES):
             own.append(group)
         else:
-            (loaded if schedule.forces and _are_unequal(state, group) else rest).append(group)
+            apart = most == 0 and touching <= MAX_BODIES and schedule.forces and _are_unequal(state, group)
+            (loaded if apart else rest).append(group)
     if sum(map(len, loaded)) >= sum(map(len, rest)):
         loaded, rest = [], loaded + rest
     return own + [np.sort(np.concatenate(several)) for several in (loaded, rest) if several]
