@@ -77,7 +77,8 @@ class LateCanvas(PygameCanvas):
 
     def paint(self, painter: Painter) -> None:
         """Let panels be drawn later; what reads the picture has it at once."""
-        if isinstance(getattr(painter, "__self__", None), Pictures | Ui):
+        drawn = painter.func if isinstance(painter, partial) else painter
+        if isinstance(getattr(drawn, "__self__", None), Pictures | Ui):
             self._due.append(partial(super().paint, painter))
         else:
             super().paint(painter)
