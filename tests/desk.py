@@ -259,12 +259,11 @@ def choose(desk: Desk, menu: str, *lines: str) -> None:
 
 
 def tap(desk: Desk, name: str, mod: int = 0) -> None:
-    """Press a key and let it go, by its name in SDL."""
+    """Press a key and let it go within a frame, as quick fingers do; by its name in SDL."""
     code = pygame.key.key_code(name)
     for kind in (pygame.KEYDOWN, pygame.KEYUP):
         pygame.event.post(pygame.Event(kind, key=code, mod=mod, unicode="", scancode=0))
-        desk.frames()
-    desk.frames(SETTLED)
+    desk.frames(SETTLED + 1)  # Dear ImGui takes what is let go a frame later
 
 
 def write(desk: Desk, text: str) -> None:
