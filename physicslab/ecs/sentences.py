@@ -50,6 +50,7 @@ SENTENCES = {
     "all_near": "all bodies that move are near each other, or coupled",
     "many_islands": "more than {limit} islands would cost more than one",
     "large_islands": "islands of more than {limit} bodies are advanced together",
+    "islands_all_soft": "with soft contacts islands are advanced together",
     "joints_without_end": (
         "joints hold bodies by forces that grow without limit, or from one event to the next"
     ),
@@ -133,6 +134,7 @@ SENTENCES = {
     "would_help": "{what}; {setting} would help",
     "no_help": "{what}; no setting is known to help",
     "no_breaking": "no joint that breaks",
+    "moved_by_hand": "no joint holds what is in the hand",
     "no_shape": "no Shape in the scene",
     "shapes_stay": "nothing that has a Shape moves",
     "one_shape": "only one Shape in the scene, and no bounds",
