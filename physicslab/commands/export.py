@@ -213,10 +213,7 @@ def make_run(task: str) -> dict[str, Any]:
     except (Diverged, NotShown, CommandError, SceneError, InvalidValue) as error:
         return {"failure": str(error)}
     notes, many = _notes(world, run), arguments.is_one_of_many
-    return {
-        "document": run_document(world, recorder, notes, is_one_of_many=many),
-        "stopped": run.stopped,
-    }
+    return {"document": run_document(world, recorder, notes, is_one_of_many=many), "stopped": run.stopped}
 
 
 def _check_size(world: World, runs: int, arguments: Namespace) -> None:
