@@ -201,14 +201,9 @@ def make_run(task: str) -> dict[str, Any]:
         recorder = RunRecorder(world)
         with Tiers(is_small(world)) as tiers:
             run = MeasuredRun(
-                world,
-                name,
-                tiers,
-                arguments.at_most,
-                recorder.write,
-                arguments.every,
+                world, name, tiers, arguments.at_most, recorder.write, arguments.every,
                 always=arguments.progress,
-            )
+            )  # fmt: skip
             run.go(arguments.seconds, None)
     except (Diverged, NotShown, CommandError, SceneError, InvalidValue) as error:
         return {"failure": str(error)}
