@@ -15,6 +15,7 @@ from physicslab import load_scene
 from physicslab.components import Mass, Material, Pin, Shape, Transform, Velocity
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.kernels.broad import grid, leaving
+from physicslab.kernels.broad.leaving import NUMBER, FatBoxes
 from physicslab.prefabs import gas
 from physicslab.systems import broad_phase
 from physicslab.systems.broad_phase import BroadPhaseSystem
@@ -164,7 +165,7 @@ def test_new_pairs_of_few_bodies_give_the_same_bits_as_new_lists_of_all(seed: in
     most = 0
     for _ in range(150):
         added.step()
-        most = max(most, system.leavers.number)
+        most = max(most, FatBoxes(*system.fat).counts[NUMBER])
     assert most > 3
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(broad_phase, "_FEW", 10**9)
@@ -172,6 +173,17 @@ def test_new_pairs_of_few_bodies_give_the_same_bits_as_new_lists_of_all(seed: in
     assert bits(added) == bits(listed)
     pairs = near(added)
     assert len(set(pairs)) == len(pairs)
+
+
+@pytest.mark.parametrize("seed", [10, 19, 30, 33])
+def test_no_bit_depends_on_how_long_lists_hold(seed: int) -> None:
+    """Pairs that had records of a longer list met what an impact had thrown at them; others did not."""
+    worlds = [funnel(seed, seed % 2 > 0) for _ in range(2)]
+    for world, ahead in zip(worlds, (1.0, 6.0), strict=True):
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(broad_phase, "_LOOKAHEAD_OF_FEW", ahead)
+            world.run(steps=150)
+    assert bits(worlds[0]) == bits(worlds[1])
 
 
 def test_in_a_gas_whose_records_are_few_all_pairs_are_listed_again() -> None:
@@ -182,10 +194,10 @@ def test_in_a_gas_whose_records_are_few_all_pairs_are_listed_again() -> None:
     assert system is not None
     listed = 0
     for _ in range(60):
-        before = system.boxes.copy()
+        before = FatBoxes(*system.fat).boxes.copy()
         world.step()
-        assert system.leavers.number == 0, "no body had its new pairs alone listed"
-        listed += not np.array_equal(before, system.boxes)
+        assert FatBoxes(*system.fat).counts[NUMBER] == 0, "no body had its new pairs alone listed"
+        listed += not np.array_equal(before, FatBoxes(*system.fat).boxes)
     assert listed > 10
     assert 2 * world.contacts.recorded < len(world.entity_index)
 
@@ -252,11 +264,11 @@ def test_all_pairs_of_boxes_that_overlap_are_listed_when_some_have_left(bounded:
     for _ in range(120):
         world.step()
         inverse, listed = world.bodies.inverse_mass, {pair[:2] for pair in near(world)}
-        boxes, entities = system.boxes, world.entity_index.entities
+        boxes, entities = FatBoxes(*system.fat).boxes, world.entity_index.entities
         meet = (boxes[:, None, :2] <= boxes[None, :, 2:]).all(axis=2)
         meet &= meet.T & (inverse[:, None] + inverse[None] > 0.0)
         for a, b in zip(*np.nonzero(np.triu(meet, 1)), strict=True):
-            reach = system.fat[3, [a, b]]
+            reach = FatBoxes(*system.fat).ways[3, [a, b]]
             if max(reach) <= 4.0 * min(reach):  # else one may be beside the other
                 assert (int(entities[a]), int(entities[b])) in listed
 
@@ -297,7 +309,10 @@ def test_a_fat_box_reaches_as_far_as_its_body_would_come_and_not_back(
     world.step()
     system = world.schedule.find(BroadPhaseSystem)
     assert system is not None
-    right, left = system.boxes[1:, 2] - (0.0, 50.0), (0.0, 50.0) - system.boxes[1:, 0]
+    right, left = (
+        FatBoxes(*system.fat).boxes[1:, 2] - (0.0, 50.0),
+        (0.0, 50.0) - FatBoxes(*system.fat).boxes[1:, 0],
+    )
     assert right[0] > 2.0 * left[0] > 1.0
     assert left[1] > 1.5 * right[1] > 0.75
 

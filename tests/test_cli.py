@@ -96,6 +96,17 @@ def test_run_writes_the_document_of_the_contract(capsys: pytest.CaptureFixture[s
     assert report["collisions"] == 1
 
 
+@pytest.mark.parametrize("scene", ["drop", "newtons_cradle", "resonance", "two_planets", "pendulum"])
+def test_each_system_is_among_those_that_run_or_those_left_out(
+    scene: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    report = document(capsys, "run", scene, "--steps", "2")
+    found = [part["name"] for key in ("systems", "left_out") for part in report[key]]
+    assert sorted(found) == sorted(system.name for system in load_scene(scene).schedule.systems)
+    calls = {system["name"]: system["calls"] for system in report["systems"]}
+    assert calls.get("SpringSystem", 2) > 0  # rigid contacts did not name springs, drag, drives and fluids
+
+
 def test_the_numbers_are_those_of_the_world(capsys: pytest.CaptureFixture[str]) -> None:
     from physicslab.components import Transform
     from physicslab.diagnostics.energy import measure_energy, measure_momentum

@@ -194,6 +194,23 @@ def test_ids_that_are_no_plain_words_are_written_as_they_are_or_in_quotes() -> N
         assert found == pytest.approx(np.sqrt(2 * 0.1 / 9.81), rel=1e-14)
 
 
+def test_ids_that_have_a_meaning_of_their_own_are_measured_or_refused() -> None:
+    world = World()
+    for x, name in enumerate(("end", 'the "big" one', "max", "first_impacts", "world", "first_impact")):
+        circle(world, (x, 5), radius=0.1, name=name)
+    measure: dict[str, Any] = {
+        "end": "end.x", "of the end": "end.end.x", "raw": 'the "big" one.x', "quoted": '"the ""big"" one".x',
+        "function": "max(max.x)", "near": "first_impacts.x", "world": "collisions",
+    }  # fmt: skip
+    space = {"end.Mass.mass": [2]}
+    columns = ensemble(world, space, measure=measure, steps=3, executor="serial").columns
+    assert [columns[name][0] for name in measure] == [0.0, 0.0, 1.0, 1.0, 2.0, 3.0, 0.0]
+    for name in ("world.x", "world.kinetic", "first_impact.x"):  # the one or the other could be meant
+        own = name.partition(".")[0]
+        with pytest.raises(SceneError, match=f"'{name}': an entity is called {own} as well; give it another"):
+            ensemble(world, space, measure=name, steps=3, executor="serial")
+
+
 @pytest.mark.notebook
 def test_a_bar_shows_how_many_runs_are_made(capsys: pytest.CaptureFixture[str]) -> None:
     space = {E: ("uniform", 0.2, 0.9)}
@@ -395,6 +412,8 @@ def test_a_sweep_of_which_every_run_failed_has_failed(capsys: pytest.CaptureFixt
     assert main([*command, "--vary", f"{M}=1:2:2", "--until", "ball.y > 99"]) == 1
     out, err = capsys.readouterr()
     assert "2 of them with a failure" in out and err == "physicslab: drop: every run failed\n"
+    assert main([*command, "--vary", f"{M}=1:2:2", "--measure", "last_impact.x"]) == 0
+    assert "\n  last_impact.x: no run gave it a value\n" in capsys.readouterr().out
 
 
 def test_parts_of_another_sweep_are_not_taken(tmp_path: Path) -> None:

@@ -49,6 +49,7 @@ from physicslab.kernels import (
     raster,
     triangles,
 )
+from physicslab.kernels.broad.leaving import SMALLS, FatBoxes
 from physicslab.kernels.events.events import run_events
 from physicslab.kernels.forces import gravity
 from physicslab.kernels.forces.inverse_square import PLAIN_LIMIT, pair_potential
@@ -69,6 +70,7 @@ from physicslab.state.state import State
 from physicslab.stepping import rigid_motion
 from physicslab.stepping.rigid import Rigid
 from physicslab.systems import broad_phase
+from physicslab.systems.broad_phase import BroadPhaseSystem
 from physicslab.systems.system import ForceSystem, Stage, System, at
 from physicslab.view.canvas.canvas import Look
 from physicslab.view.canvas.display import Display
@@ -119,7 +121,10 @@ def heaps() -> None:
             world.step(0.015)
         read_scene(write_scene(world)).step(0.01)
         world.component(7, Velocity).linear = (30.0, 0.0)
+        lists = world.schedule.find(BroadPhaseSystem)
+        assert lists is not None
         with patch.object(broad_phase, "_FEW", 1_000):  # all pairs are listed, while contacts have slots
+            FatBoxes(*lists.fat).counts[SMALLS] = -1
             world.step()
         world.component(7, Mass).mass = 3.0
         world.step()

@@ -298,6 +298,52 @@ def test_a_driven_platform_belongs_to_every_island() -> None:
     assert beside.account.sums[:, 0].sum() == pytest.approx(change, abs=1e-8)
 
 
+ALL_SOFT = [
+    SimulationConfig(contacts="soft", collisions="step"),
+    SimulationConfig(sleeping=True, collisions="step"),
+    SimulationConfig(integrator="leapfrog"),
+]
+"""Settings with which what can touch has soft contacts, wherever it is."""
+
+
+@pytest.mark.parametrize("simulation", ALL_SOFT)
+def test_small_islands_without_a_better_stepper_are_one_world(simulation: SimulationConfig) -> None:
+    """Each was a call of its own: 31 discs in six islands took four times as long as together."""
+    world = World(simulation=simulation)
+    floor(world)
+    for n in range(4):
+        few(world, n * FAR)
+    world.run(steps=3)
+    assert sizes(world) == []
+    assert world.islands.why_one == "with soft contacts islands are advanced together"
+    assert world.islands.steps_ahead(world, world.simulation.dt) > 1_000  # they are not looked for again
+
+
+@pytest.mark.parametrize("simulation", ALL_SOFT)
+def test_of_soft_islands_those_of_unlike_masses_and_what_only_flies_are_apart(
+    simulation: SimulationConfig,
+) -> None:
+    world = World(simulation=simulation)
+    floor(world)
+    calm = [body for n in (0, 1) for body in few(world, n * FAR)]
+    loaded = [*few(world, 2 * FAR), box(world, (2 * FAR, 3.0), width=0.4, height=0.4, mass=500.0)]
+    world.spawn(Transform((0.0, 9.0)), Velocity((0.5, 0.0)), Mass(1.0))  # no Shape
+    world.run(steps=3)
+    assert sizes(world) == [len(calm), len(loaded), 1]
+
+
+def test_unlike_masses_are_not_apart_from_fewer_others() -> None:
+    world = World(simulation=ALL_SOFT[0])
+    floor(world)
+    few(world)
+    for n in (1, 2):
+        few(world, n * FAR)
+        box(world, (n * FAR, 3.0), width=0.4, height=0.4, mass=500.0)
+    world.run(steps=3)
+    assert sizes(world) == []
+    assert world.islands.why_one == "with soft contacts islands are advanced together"
+
+
 def test_planets_are_one_island_and_the_reason_is_told() -> None:
     world = World(physics=PhysicsConfig(gravity_mode="planet"))
     disc(world, 0.0, 0.0)
@@ -475,7 +521,7 @@ def test_an_edit_that_is_taken_back_and_made_again_reaches_its_island() -> None:
 
 def test_a_world_that_is_still_one_goes_on_from_a_file_within_a_step_of_another_length() -> None:
     """Impulses of the shortened step were taken for those of a whole one, where a new world has islands."""
-    world = World(simulation=SimulationConfig(contacts="soft", collisions="step"))
+    world = World(simulation=SimulationConfig(contacts="soft"))
     floor(world)
     bodies = [*few(world), disc(world, 1.5, 0.3, 30.0)]
     world.run(seconds=1.805)

@@ -30,7 +30,8 @@ REGISTER = Register((*KINDS.values(), FIVE))
 POOL, (WIDE, TALL) = REGISTER.pool, REGISTER.extents[len(KINDS) + 1]
 FIRST = {"disc": 0, "box": BOX, "capsule": 5, "five": 7}
 COUNT = {"disc": 1, "box": 4, "capsule": 2, "five": 5}
-angles, extents = st.floats(-math.pi, math.pi), st.floats(0.2, 2.0)
+angles = st.floats(-math.pi, math.pi, allow_subnormal=False)  # by which Python cannot divide in silence
+extents = st.floats(0.2, 2.0)
 kinds = st.sampled_from(("box", "capsule", "five"))
 far = Way(0.0, 0.0, 0.0, 0.0)
 

@@ -176,9 +176,10 @@ def _tell(result: EnsembleResult, label: str, output: Output | None) -> None:
 
 
 def _summary(result: EnsembleResult) -> list[str]:
-    """Return least, mean and greatest of each measure that has any."""
+    """Return least, mean and greatest of each measure, as far as runs gave it a value."""
     return [
         f"  {name}: least {one['least']:.6g}, mean {one['mean']:.6g}, greatest {one['greatest']:.6g}"
-        for name, one in result.spread().items()
         if one["count"]
+        else f"  {name}: no run gave it a value"
+        for name, one in result.spread().items()
     ]

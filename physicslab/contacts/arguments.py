@@ -5,6 +5,7 @@ import numpy as np
 from physicslab.components import Material, Transform, Velocity
 from physicslab.kernels import Plain
 from physicslab.kernels.arguments import ActingTuple, Bounds, Inverse, Materials, Motion, Near, Softness
+from physicslab.kernels.broad.leaving import blank_boxes
 from physicslab.kernels.geometry.shapes import ShapesTuple
 from physicslab.kernels.joints.blocks import Joints
 from physicslab.kernels.records import APART, CONSTRAINT, CONSTRAINT_POINT
@@ -60,7 +61,7 @@ def near_in(state: State) -> Plain[Near]:
     if len(contacts.rotations) != rows:
         contacts.rotations = np.full((rows, 3), np.nan)
         contacts.linear_before, contacts.angular_before = np.zeros((rows, 2)), np.zeros(rows)
-        contacts.moments, contacts.travels = np.full((rows, 2), -np.inf), np.zeros((5, rows))
+        contacts.moments, contacts.travels = np.full((rows, 7), -np.inf), np.zeros((5, rows))
         contacts.stirred = np.zeros(rows, np.int64)
     if len(contacts.noted) < len(contacts.points):
         contacts.noted = np.zeros((len(contacts.points), 4))
@@ -125,7 +126,7 @@ def do_stage(
     *_, impacts, _, contacts.impulse_dt = soft.advance(
         1, last, 0, plan, course, -1, motion_of(state), _NOTHING, shapes_of(state), materials_of(state),
         inverse, state.bodies.sub_integrated, acting_in(state), gravity, packed, (_NOTHING, rows), sleepers,
-        (0.0, 0.0), np.zeros((8, 0)), bounds_of(state), near, joints_in(state), contacts.opened, softness,
+        (0.0, 0.0), blank_boxes(0), bounds_of(state), near, joints_in(state), contacts.opened, softness,
         contacts.impulse_dt, contacts.step_log, np.zeros(soft.COSTS, np.int64),
         NOTHING_SAMPLED,
     )  # fmt: skip

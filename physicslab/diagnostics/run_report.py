@@ -82,8 +82,12 @@ def run_report(world: World, record: RunRecord) -> dict[str, Any]:
     world.synchronise()
     momentum, most = measure_momentum(world), world.parts[0]
     stepper: Advancer = world.islands if world.islands.members else world.steppers.main(world)
-    # A system that ran and is not needed any more is not among those left out.
-    timings = {name: timing for name, timing in world.schedule.timings.items() if timing.calls}
+    # A system that ran and is not needed any more is not among those left out; one that is needed stands
+    # among the systems, with no call where a closed form does its work.
+    running = {system.name for system in world.schedule.running}
+    timings = {
+        name: timing for name, timing in world.schedule.timings.items() if timing.calls or name in running
+    }
     return {
         "scene": record.scene,
         "time": world.time,

@@ -46,13 +46,18 @@ def quoted(text: str, ids: Iterable[str]) -> str:
     >>> quoted("box 2.y < 2 box 10.y", ["box", "box 2", "box 10"])
     '"box 2".y < 2 "box 10".y'
     """
-    odd = sorted((one for one in ids if not _is_word(one)), key=len, reverse=True)
+    odd = sorted((one for one in ids if _written(one) != one), key=len, reverse=True)
     either = "|".join(map(re.escape, odd))
-    return re.sub(rf'(?<![\w."])({either})(?=\.[^\W\d])', r'"\1"', text) if odd else text
+    if not odd:
+        return text
+    return re.sub(rf'(?<![\w."])({either})(?=\.[^\W\d])', lambda found: _written(found[1]), text)
 
 
-def _is_word(name: str) -> bool:
-    return name.isidentifier() and not iskeyword(name)
+def _written(name: str) -> str:
+    """Return an id as expressions have it: in quotes where it is no plain word, its own ones doubled."""
+    if name.isidentifier() and not iskeyword(name):
+        return name
+    return '"{}"'.format(name.replace('"', '""'))
 
 
 def quantity_of(name: str, ids: Iterable[str]) -> tuple[str | None, str]:
@@ -66,11 +71,13 @@ def quantity_of(name: str, ids: Iterable[str]) -> tuple[str | None, str]:
     known = [*ids, "world"]
     entity = max((one for one in known if f"{name}.".startswith(f"{one}.")), key=len, default="")
     if not entity:
-        words = ", ".join(one if _is_word(one) else f'"{one}"' for one in known[:_LISTED])
+        words = ", ".join(map(_written, known[:_LISTED]))
         more = (", ..." if len(known) > _LISTED else "") + suggestion(name.rpartition(".")[0] or name, known)
         raise InvalidText(f"'{name}' is no quantity: must begin with one of {words}{more}")
     column = name[len(entity) + 1 :]
     body = None if entity == "world" else 1
+    if body is None and known.count("world") > 1 and column in columns(1):
+        raise InvalidText(f"'{name}': an entity is called world as well; give it another id")
     if name != COLLISIONS and (column not in _NAMES or why_not_of(_NAMES[column], body) is not None):
         raise InvalidText(f"'{name}' is no quantity: {entity} has {', '.join(columns(body))}")
     return (None if body is None else entity), _NAMES.get(column, column)

@@ -85,8 +85,8 @@ _UNCLEAR = (
 )  # fmt: skip
 """Texts that can be read as different numbers."""
 _SPACED = re.compile(r"(?<=[A-Za-zµ°π0-9)])[ ·]+(?=[A-Za-zµ°π(])")
-_QUOTED = re.compile(r'"([^"]*)"')
-"""A name that is no plain word, as ``"box 2"`` in ``"box 2".y``."""
+_QUOTED = re.compile(r'"((?:[^"]|"")*)"')
+"""A name that is no plain word, as ``"box 2"`` in ``"box 2".y``; quotation marks within it are doubled."""
 
 
 def evaluate(text: str, unit: str = "1") -> float:
@@ -305,7 +305,8 @@ def _parsed(text: str) -> ast.expr:
         raise InvalidText("a number is needed")
     if len(text) > _DEPTH_LIMIT:
         raise InvalidText(f"'{shown}' is too long")
-    names = {f"quoted{number}_": name for number, name in enumerate(_QUOTED.findall(text))}
+    quoted = (name.replace('""', '"') for name in _QUOTED.findall(text))
+    names = {f"quoted{number}_": name for number, name in enumerate(quoted)}
     words = iter(names)
     plain = _QUOTED.sub(lambda _: next(words), text.strip())
     for pattern, why in _UNCLEAR:

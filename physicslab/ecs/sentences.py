@@ -50,6 +50,7 @@ SENTENCES = {
     "all_near": "all bodies that move are near each other, or coupled",
     "many_islands": "more than {limit} islands would cost more than one",
     "large_islands": "islands of more than {limit} bodies are advanced together",
+    "islands_all_soft": "with soft contacts islands are advanced together",
     "joints_without_end": (
         "joints hold bodies by forces that grow without limit, or from one event to the next"
     ),

@@ -114,16 +114,31 @@ class _Canonical(ast.NodeTransformer):
         return ast.Call(ast.Name(name), [self.visit(argument) for argument in node.args], node.keywords)
 
     def _named(self, node: ast.Name | ast.Attribute) -> ast.expr:
-        name = dotted(node)
-        name = _SHORT.get(name, name.removeprefix("end."))
+        whole = dotted(node)
+        name = whole.removeprefix("end.")
+        name = _SHORT.get(name, name)
+        own = self._owner(name)
+        if not own and (own := self._owner(whole)):  # a body that is called end
+            name = whole
         which, _, column = name.partition(".")
-        if which in _WHICH and which not in self._ids and column not in _IMPACTS:
+        if which in _WHICH and own == which:
+            raise InvalidText(f"'{name}': an entity is called {which} as well; give it another id")
+        if which in _WHICH and not own and column not in _IMPACTS:
             raise InvalidText(f"'{name}': an impact has {', '.join(_IMPACTS)}")
-        own = max((one for one in self._ids if name.startswith(f"{one}.")), key=len, default="")
         if own:
             column = name.removeprefix(f"{own}.")
             name = f"{own}.{_PARTS.get(column, column)}"
         return ast.Name(name)
+
+    def _owner(self, name: str) -> str:
+        """Return the longest id that a name begins with; empty if none."""
+        return max((one for one in self._ids if name.startswith(f"{one}.")), key=len, default="")
+
+
+def _is_of_impact(name: str) -> bool:
+    """Whether a name is that of a quantity of the first or the last impact, as ``first_impact.x``."""
+    which, _, column = name.partition(".")
+    return which in _WHICH and column in _IMPACTS
 
 
 def _impact_columns(ends: NDArray[Any]) -> dict[str, list[float]]:
@@ -143,10 +158,9 @@ class _Impacts:
         self._found = found
 
     def named(self, name: str) -> Quantity | None:
-        which, _, column = name.partition(".")
-        if which not in _WHICH:
+        if not _is_of_impact(name):
             return None
-        return Quantity(self._found.get(name, math.nan), _IMPACTS[column], True)
+        return Quantity(self._found.get(name, math.nan), _IMPACTS[name.partition(".")[2]], True)
 
     def called(self, name: str, arguments: list[ast.expr], whole: Expression) -> Quantity | None:
         return None
@@ -194,7 +208,7 @@ class Measures:
         self._end = _quantities(self._expressions[name] for name in self._expressions.keys() - path)
         self._on_path = path
         self._since, named = 0, (name for one in self._expressions.values() for name in one.names())
-        self.of_impacts = any(name.startswith(_WHICH) for name in named)
+        self.of_impacts = any(map(_is_of_impact, named))
         world.contacts.read |= self.of_impacts or self.needs_path
         self.units = {name: self._tried(name) for name in self._names}
         self._record, self._ends = Record(world, self._path), Record(world, self._end)
@@ -319,4 +333,4 @@ def _looks_back(expression: Expression) -> bool:
 
 def _quantities(expressions: Iterable[Expression]) -> list[str]:
     names = dict.fromkeys(name for one in expressions for name in one.names())
-    return [name for name in names if name not in ("time", *FUNCTIONS) and not name.startswith(_WHICH)]
+    return [name for name in names if name not in ("time", *FUNCTIONS) and not _is_of_impact(name)]

@@ -176,7 +176,7 @@ class Contacts:
         self.noted: NDArray[np.float64] = np.zeros((0, 4))
         self.linear_before: NDArray[np.float64] = np.zeros((0, 2))
         self.angular_before: NDArray[np.float64] = np.zeros(0)
-        self.moments: NDArray[np.float64] = np.zeros((0, 2))
+        self.moments: NDArray[np.float64] = np.zeros((0, 7))
         self.apart: NDArray[Any] = np.zeros(0, APART)
         self.constraints: NDArray[Any] = np.zeros(0, CONSTRAINT)
         self.constraint_points: NDArray[Any] = np.zeros(0, CONSTRAINT_POINT)

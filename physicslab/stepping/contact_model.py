@@ -1,6 +1,7 @@
 """Which worlds can have rigid contacts, and limits and motors with a largest force beside them or alone."""
 
 from physicslab.components import Mass, Shape, Transform, Velocity
+from physicslab.ecs.config import SimulationConfig
 from physicslab.ecs.sentences import sentence
 from physicslab.state.state import State
 from physicslab.stepping.ballistic import CONTACT_STEP, count_pairs
@@ -45,16 +46,35 @@ def _why_not_worthwhile(state: State) -> str | None:
 
     A setting that only soft contacts have is not overruled by a default.
     """
-    if state.simulation.sleeping is True:
-        return sentence("sleeping_asked")
-    if state.simulation.collisions == "step":
-        return sentence("within_steps_asked")
+    if (asked := _why_overruled(state.simulation)) is not None:
+        return asked
     # A body that is held counts: the model must not change when it is let go.
     if len(state.batch(Shape, Transform, Velocity, Mass)) > _MAX_BODIES:
         return sentence("many_touch", limit=_MAX_BODIES)
     if state.joints.why_not_smooth() and len(state.batch(Transform, Velocity, Mass)) > _MAX_BODIES:
         return sentence("many_bodies", limit=_MAX_BODIES)
     return None
+
+
+def _why_overruled(simulation: SimulationConfig) -> str | None:
+    """Return the setting of a simulation that only soft contacts have, or ``None``."""
+    if simulation.sleeping is True:
+        return sentence("sleeping_asked")
+    return sentence("within_steps_asked") if simulation.collisions == "step" else None
+
+
+def why_all_soft(state: State, schedule: Schedule) -> str | None:
+    """Return why what can touch is advanced by the contact step wherever it is, or ``None`` where it may not.
+
+    By settings and systems alone: no island of such a world has a better stepper than another.
+    """
+    simulation = state.simulation
+    if simulation.collisions != "step" and simulation.integrator in ("auto", "exact"):
+        return None
+    if simulation.contacts == "soft":
+        return sentence("asked_for")
+    asked = None if simulation.contacts == "rigid" else _why_overruled(simulation)
+    return asked or _why_systems_soft(state, schedule)
 
 
 def _why_too_fast(state: State, schedule: Schedule) -> str | None:
@@ -67,6 +87,17 @@ def _why_too_fast(state: State, schedule: Schedule) -> str | None:
 
 def why_not_rigid(state: State, schedule: Schedule) -> str | None:
     """Return why contacts cannot be rigid, or ``None``."""
+    if (systems := _why_systems_soft(state, schedule)) is not None:
+        return systems
+    if (nowhere := why_nowhere(state)) is not None:
+        return nowhere
+    if count_pairs(state) > _MAX_PAIRS:
+        return sentence("many_pairs", limit=_MAX_PAIRS)
+    return why_not_points(state)
+
+
+def _why_systems_soft(state: State, schedule: Schedule) -> str | None:
+    """Return the method, or the system that is there or is not, with which contacts are soft, or ``None``."""
     if state.simulation.integrator not in ("auto", "dop853"):
         return sentence("other_method_than_rigid", method=state.simulation.integrator)
     for needed in CONTACT_STEP if schedule.runs(Stage.CONTACT) else (IntegrateSystem,):
@@ -75,8 +106,4 @@ def why_not_rigid(state: State, schedule: Schedule) -> str | None:
     for system in schedule.running:
         if not (isinstance(system, ForceSystem) or system.is_engine or system.leaves_motion()):
             return sentence("acts_within_step", system=system.name)
-    if (nowhere := why_nowhere(state)) is not None:
-        return nowhere
-    if count_pairs(state) > _MAX_PAIRS:
-        return sentence("many_pairs", limit=_MAX_PAIRS)
-    return why_not_points(state)
+    return None

@@ -15,8 +15,10 @@ from physicslab.components import Drag, Mass, Shape, Transform, Velocity
 from physicslab.ecs.sentences import sentence
 from physicslab.kernels.broad.clusters import label_clusters
 from physicslab.kernels.broad.island_gaps import steps_apart
+from physicslab.kernels.solver.impulse import HEAVY_RATIO
 from physicslab.state.state import State
 from physicslab.stepping.ballistic import CONTACT_STEP
+from physicslab.stepping.contact_model import why_all_soft
 from physicslab.systems.accelerate import AccelerateSystem
 from physicslab.systems.integrate import why_nowhere
 from physicslab.systems.schedule import Schedule
@@ -63,7 +65,22 @@ def why_whole(state: State, schedule: Schedule) -> str | None:
         return sentence("nothing_integrates")
     if any(found[1:]) and not all(found):
         return sentence("contact_systems_absent")
+    rows = np.flatnonzero(movable_in(state))
+    if _all_shaped_alike(state, schedule, rows) and why_all_soft(state, schedule) is not None:
+        return sentence("islands_all_soft")
     return _why_coupled(state, schedule)
+
+
+def _all_shaped_alike(state: State, schedule: Schedule, rows: Rows) -> bool:
+    """Whether all of some bodies can touch others, and none needs more substeps for the masses of others."""
+    loaded = bool(schedule.forces) and _are_unequal(state, rows)
+    return bool(state.table(Shape).present[rows].all()) and not loaded
+
+
+def _are_unequal(state: State, rows: Rows) -> bool:
+    """Whether masses of some bodies are so unlike that a heavy one on a light one may need more substeps."""
+    inverse = state.bodies.inverse_mass[rows]
+    return bool(inverse.max() > HEAVY_RATIO * inverse.min())
 
 
 def _why_coupled(state: State, schedule: Schedule) -> str | None:
@@ -108,17 +125,38 @@ def groups_of(state: State, schedule: Schedule, rows: Rows) -> Partition:
     groups = [rows[labels == label] for label in dict.fromkeys(labels.tolist())]
     if len(groups) == 1:
         return Partition((rows,), sentence("all_near"))
-    shaped = state.table(Shape).present
-    small = [np.count_nonzero(shaped[group]) <= MAX_BODIES for group in groups]
-    own = [group for group, alone in zip(groups, small, strict=True) if alone]
+    soft = why_all_soft(state, schedule) is not None
+    own = _advanced_apart(state, schedule, groups, soft=soft)
     if len(own) > MAX_ISLANDS:
         return Partition((rows,), sentence("many_islands", limit=MAX_ISLANDS))
-    rest = [group for group, alone in zip(groups, small, strict=True) if not alone]
-    if rest:
-        own.append(np.sort(np.concatenate(rest)))
     if len(own) == 1:
-        return Partition((rows,), sentence("large_islands", limit=MAX_BODIES))
+        together = sentence("islands_all_soft") if soft else sentence("large_islands", limit=MAX_BODIES)
+        return Partition((rows,), together)
     return Partition(tuple(sorted(own, key=lambda group: int(group[0]))))
+
+
+def _advanced_apart(
+    state: State, schedule: Schedule, groups: Sequence[Rows], *, soft: bool
+) -> list[Rows]:  # fmt: skip
+    """Return islands, of which those are together that would not be advanced better on their own.
+
+    These are large ones; where all contacts are ``soft``, also small ones that can touch something. Those of
+    very unlike masses, which may need more substeps than others, are then together by themselves, unless they
+    are most bodies.
+    """
+    shaped = state.table(Shape).present
+    own, loaded, rest = list[Rows](), list[Rows](), list[Rows]()
+    for group in groups:
+        touching = np.count_nonzero(shaped[group])
+        if touching > MAX_BODIES:
+            rest.append(group)
+        elif touching < len(group) or not soft:
+            own.append(group)
+        else:
+            (loaded if schedule.forces and _are_unequal(state, group) else rest).append(group)
+    if sum(map(len, loaded)) >= sum(map(len, rest)):
+        loaded, rest = [], loaded + rest
+    return own + [np.sort(np.concatenate(several)) for several in (loaded, rest) if several]
 
 
 def _labels(state: State, schedule: Schedule, rows: Rows) -> Rows:

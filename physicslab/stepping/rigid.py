@@ -98,7 +98,8 @@ class Rigid(Stepper):
         self._unmoved: NDArray[np.int64] = np.zeros(0, np.int64)
         self.energetic_impacts = self.restitutions_lowered = self.by_impulses = 0
         self.why_impulses, self.energy_added = "", 0.0
-        within = [system for system in schedule.running if system.is_engine and system.acts_within_step()]
+        engine = [system for system in schedule.running if system.is_engine and system.acts_within_step()]
+        within = dict.fromkeys((*engine, *schedule.forces))
         self._within = [system.name for system in within if not isinstance(system, IntegrateSystem)]
         steady = not any(force.depends_on_time(state) for force in schedule.smooth_forces)
         self._motion = RigidMotion(self._ode, len(self._pairs), steady, rows)

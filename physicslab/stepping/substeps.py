@@ -24,6 +24,7 @@ from physicslab.kernels import Plain
 from physicslab.kernels.arguments import Plan, Softness
 from physicslab.kernels.broad import grid, leaving, near_pairs
 from physicslab.kernels.broad.fat_boxes import fat_boxes
+from physicslab.kernels.broad.leaving import blank_boxes
 from physicslab.kernels.clock import time_after
 from physicslab.kernels.loading import direct_entry, working_ns
 from physicslab.kernels.solver import soft
@@ -118,12 +119,11 @@ class Substeps:
         wide = state.contacts.wide.kernels if len(solid_rows(state)) >= MIN_WIDE else ()
         self.kernels: tuple[Any, ...] = (*compiled, *wide, *(schedule.kernels(state) if made.reasons else ()))
         self._cost, self._forces = np.zeros(soft.COSTS, np.int64), made.forces
-        self._h = 0.0
         self._columns: object = None
         self._shapes: object = None  # which are others where vertices are new in this process
         self._springs = (np.zeros(0), np.zeros(0, np.int64)) if self.split is None else self.split.flows
         self._entry: Callable[..., Any] = soft.advance
-        self._fixed: tuple[tuple[Any, ...], tuple[Any, ...], Any]
+        self._fixed: tuple[tuple[Any, ...], tuple[Any, ...], tuple[Any, ...], Any]
         self._replaced = -1
         self._held: tuple[Any, ...] | None = None  # arguments of the last call, where they hold for the next
         self._packed: tuple[list[NDArray[np.int64]], NDArray[np.int64]] = [], np.zeros((0, 3), np.int64)
@@ -257,8 +257,8 @@ class Substeps:
         state.collisions += impacts - finished_impacts
         self._nanoseconds += time.perf_counter_ns() - began
         self._schedule.defer(self._settle)
-        if why != soft.ALL:
-            self._held = None  # arrays may be replaced where it has come back
+        if why not in (soft.ALL, soft.PAIRS_STALE):
+            self._held = None  # arrays may be replaced where it has come back; a list says so
         return why, done, substep, part
 
     def _finish(self, state: State, steps: int, span: Span) -> None:
@@ -279,13 +279,14 @@ class Substeps:
         """Return those of a call that no call before it tells."""
         contacts, sleep = state.contacts, state.sleep
         columns, shapes = state.checkpoint.columns, state.bodies.plain_shapes
-        if self._columns is not columns or self._shapes is not shapes or self._h != h:
-            self._columns, self._shapes, self._h = columns, shapes, h
-            self._fixed = self._fixed_arguments(state, h)
+        if self._columns is not columns or self._shapes is not shapes:
+            self._columns, self._shapes = columns, shapes
+            self._fixed = self._fixed_arguments(state)
             self._entry = soft.advance  # which looks at the types of the arrays once
         else:
             self._entry = direct_entry(soft.advance)
-        motion, laws, marked = self._fixed
+        motion, gravity, laws, marked = self._fixed
+        acting = (*gravity, speculative_margin(state, h), self._accounts.other)
         bodies = state.bodies
         packed = bodies.packed, self._addresses(state) if self._packs else self._packed[1]
         sleepers = (
@@ -296,8 +297,8 @@ class Substeps:
         if self._broad_phase is not None:
             fat = self._broad_phase.fat
         return (
-            *motion, packed, self._springs, sleepers, damping, fat, bounds, near_in(state), joints_in(state),
-            contacts.opened, self._softness(state),
+            *motion, acting, packed, self._springs, sleepers, damping, fat, bounds, near_in(state),
+            joints_in(state), contacts.opened, self._softness(state),
         )  # fmt: skip
 
     def _addresses(self, state: State) -> NDArray[np.int64]:
@@ -309,20 +310,20 @@ class Substeps:
             self._packed = calls, np.concatenate(calls)
         return self._packed[1]
 
-    def _fixed_arguments(self, state: State, h: float) -> tuple[tuple[Any, ...], tuple[Any, ...], Any]:
-        """Return the columns in order, the laws, and room for marks."""
+    def _fixed_arguments(self, state: State) -> tuple[tuple[Any, ...], tuple[Any, ...], tuple[Any, ...], Any]:
+        """Return the columns in order, masses and uniform gravity, the laws, and room for marks."""
         bodies, physics, accounts = state.bodies, state.physics, self._accounts
         mass = state.table(Mass)
         gravity = (
             mass["mass"], mass["inertia"], bodies.inverse_mass, bodies.inverse_inertia, accounts.gravity.x,
-            accounts.gravity.y, speculative_margin(state, h), accounts.other,
+            accounts.gravity.y,
         )  # fmt: skip
         columns = (
             motion_of(state), state.checkpoint.numbers, shapes_of(state), materials_of(state),
-            inverse_in(state), bodies.sub_integrated, acting_in(state), gravity,
+            inverse_in(state), bodies.sub_integrated, acting_in(state),
         )  # fmt: skip
-        laws = (physics.linear_damping, physics.angular_damping), np.zeros((8, 0)), bounds_of(state)
-        return columns, laws, np.zeros_like(state.sleep.asleep)
+        laws = (physics.linear_damping, physics.angular_damping), blank_boxes(0), bounds_of(state)
+        return columns, gravity, laws, np.zeros_like(state.sleep.asleep)
 
     # ---- what they cost ------------------------------------------------------------------------------------
 

@@ -8,34 +8,14 @@ import math
 
 from physicslab.kernels import Numbers, Plain, Vectors, inlined, kernel
 from physicslab.kernels.arguments import Motion
-from physicslab.kernels.geometry.contact import CACHE_TOLERANCE, CACHE_TURN_TOLERANCE, WIDE_TOLERANCE
-from physicslab.kernels.geometry.pair import CONTACT_MARGIN
+from physicslab.kernels.geometry.margins import touching_ahead, touching_distance
 from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple, half_extents, named_shapes
 
-CORNERWISE = math.sqrt(2.0)
-"""Largest ratio of the distance of two boxes to their distance along the normal of a side."""
-_BOX_SHARE = 0.5 * CORNERWISE * (1.5 * CONTACT_MARGIN + WIDE_TOLERANCE * CACHE_TOLERANCE)
-"""Share of its smaller side up to which a slow box is one half of a pair that has points, or keeps them."""
 HIT_SHARE = 1.0
 """Share of its bounding radius by which the margin of a slow body is increased at most where many pairs have
 records."""
 _TURNS = 4.0
 """Number of times h in which a body may turn on as it does; nowhere does it pass its bounding radius."""
-_TURN_SHARE = CORNERWISE * WIDE_TOLERANCE * CACHE_TURN_TOLERANCE
-"""The same for points that are kept while it turns, as a share of its bounding radius."""
-
-
-@inlined
-def _touching_distance(reach: float, radius: float, thickness: float, speculative_margin: float) -> float:
-    """Return the largest distance [m] at which a body at rest may have points with the bounds.
-
-    Two bodies may have points with each other up to the sum of theirs. ``thickness`` is half of the smaller
-    extent.
-    """
-    share = CONTACT_MARGIN * reach
-    if reach > radius:
-        share = _BOX_SHARE * (2.0 * thickness) + _TURN_SHARE * reach
-    return share + speculative_margin
 
 
 @inlined
@@ -47,9 +27,8 @@ def _reaches(
 
     It goes on by (ux, uy) [m], and has turned by ``turned`` [rad] then.
     """
-    ahead = math.sqrt(ux * ux + uy * uy) * (CORNERWISE if reach > radius else 1.0)
-    needed = _touching_distance(reach, radius, thin, speculative_margin)
-    return moved + ahead + min(turned, 1.0) * (reach - radius) + needed
+    needed = touching_ahead(ux, uy, reach, radius, thin, speculative_margin)
+    return moved + min(turned, 1.0) * (reach - radius) + needed
 
 
 @inlined
@@ -145,7 +124,7 @@ def fatten(
     ahead_x, ahead_y = max(6.5 * h * abs(vx) - 0.5 * around, 0.0), max(6.5 * h * abs(vy) - 0.5 * around, 0.0)
     margin = 0.08 * min(half_x, half_y) + around
     margin += min(_TURNS * h * abs(motion.angular[i]), 1.0) * (reach - radius)
-    margin += _touching_distance(reach, radius, shapes.thin[i], speculative_margin)
+    margin += touching_distance(reach, radius, shapes.thin[i], speculative_margin)
     fat[6, i], fat[7, i] = math.copysign(ahead_x, vx), math.copysign(ahead_y, vy)
     x, y = x + fat[6, i], y + fat[7, i]
     fat[0, i], fat[1, i], fat[2, i], fat[3, i], fat[4, i] = x, y, angle, reach, margin

@@ -43,20 +43,47 @@ _MAX_CELLS = 256
 """Largest number of cells in which the neighbours of one body are looked for."""
 
 
-class Index(NamedTuple):
-    """Bodies by the cells of their fat boxes' centres, of a level that fits them; then those too large.
+SPARSE = 2
+"""Bodies for each record from which on all pairs are listed again: few records are soon carried over."""
+NUMBER, SMALLS, BODIES = range(3)
+"""Where in ``FatBoxes.counts`` these are."""
+CELL, AHEAD, SUBSTEPS_AHEAD = range(3)
+"""Where in ``FatBoxes.spans`` these are."""
 
-    Where each bucket of cells begins, the rows of the bodies, the cells of the sorted ones, how many of these
-    there are, how many in all, and the size of the smallest cells [m]. In ``home_x`` is the level as well.
+
+class FatBoxes(NamedTuple):
+    """Fat boxes, which bodies have left theirs since all were made, and the index to find their neighbours.
+
+    ``ways`` (8, rows) is as in :func:`~physicslab.kernels.broad.fat_boxes.still_holds`; the ``boxes`` (rows,
+    4) are xmin, ymin, xmax, ymax [m]; ``moved`` (rows,) marks those that have left theirs.
+
+    The index has bodies by the cells of their boxes' centres, of a level that fits them, and then those too
+    large: where each bucket of cells begins, the rows of the bodies, the cells of the sorted ones. In
+    ``home_x`` is the level as well. ``counts`` is how many bodies have left their boxes, or -1 where all
+    pairs must be listed again; how many are sorted, or -1 where there is no index; how many are in it.
+    ``spans`` is the size of the smallest cells [m]; for how long boxes are made ahead [s], and for how many
+    substeps more.
     """
 
+    ways: Vectors
+    boxes: Vectors
+    moved: Flags
     first: Rows
     body: Rows
     home_x: Rows
     home_y: Rows
-    smalls: int
-    bodies: int
-    cell: float
+    counts: Rows
+    spans: Numbers
+
+
+def blank_boxes(rows: int) -> Plain[FatBoxes]:
+    """Return room for the fat boxes of so many bodies, none of which is made."""
+    first = np.zeros(1 + (1 << (2 * rows).bit_length()), np.int64)
+    body, home_x, home_y = np.zeros((3, rows), np.int64)
+    return (
+        np.zeros((8, rows)), np.zeros((rows, 4)), np.zeros(rows, np.bool_), first, body, home_x, home_y,
+        np.array([0, -1, 0], np.int64), np.zeros(3),
+    )  # fmt: skip
 
 
 @inlined
@@ -137,17 +164,17 @@ class Leaver(NamedTuple):
 
 @inlined
 def _pair(
-    leaver: Leaver, j: int, near: Near, shapes: Shapes, fat: Vectors, boxes: Vectors, moved: Flags,
-    inverse_mass: Numbers,
+    leaver: Leaver, j: int, near: Near, shapes: Shapes, fat: FatBoxes, inverse_mass: Numbers
 ) -> None:  # fmt: skip
     """List the pair of a leaver and of body j, if it is new and either can be moved."""
     i = leaver.row
-    if i == j or inverse_mass[i] + inverse_mass[j] == 0.0 or not _overlap(leaver.box, boxes, j):
+    if i == j or inverse_mass[i] + inverse_mass[j] == 0.0 or not _overlap(leaver.box, fat.boxes, j):
         return
-    distance = distance_to_activate(fat, i, j)
+    distance = distance_to_activate(fat.ways, i, j)
     # If the boxes overlapped before, it is listed, unless it was left out as beside a long body.
-    left_out = distance == math.inf and leaver.first and not moved[j] and beside(shapes, fat, i, j)
-    if _overlap(leaver.before, boxes, j) and not left_out:
+    unmoved = leaver.first and not fat.moved[j]
+    left_out = distance == math.inf and unmoved and beside(shapes, fat.ways, i, j)
+    if _overlap(leaver.before, fat.boxes, j) and not left_out:
         return
     k = near.counts[PROXIMITY]
     near.counts[PROXIMITY] = k + 1
@@ -177,12 +204,11 @@ def _meet_walls(leaver: Leaver, near: Near, bounds: Numbers) -> None:
 
 @always_inlined
 def _list_leaver(
-    leaver: Leaver, growth: float, index: Index, near: Near, shapes: Shapes, fat: Vectors, boxes: Vectors,
-    moved: Flags, inverse_mass: Numbers,
+    leaver: Leaver, growth: float, near: Near, shapes: Shapes, fat: FatBoxes, inverse_mass: Numbers
 ) -> bool:  # fmt: skip
     """List the new pairs of one body; return whether that can be done. Boxes may have grown by ``growth``."""
-    first, body, home_x, home_y, smalls, count, cell = index
-    mask, box = len(first) - 2, leaver.box
+    first, body, home_x, home_y = fat.first, fat.body, fat.home_x, fat.home_y
+    mask, box, cell = len(first) - 2, leaver.box, fat.spans[CELL]
     for level in range(_LEVELS):
         around = 0.5 * cell + growth
         from_x, to_x = cell_at((box[0] - around) / cell), cell_at((box[2] + around) / cell)
@@ -196,78 +222,84 @@ def _list_leaver(
                 at = _bucket(home, iy, mask)
                 for q in range(first[at], first[at + 1]):
                     if home_x[q] == home and home_y[q] == iy:
-                        _pair(leaver, body[q], near, shapes, fat, boxes, moved, inverse_mass)
-    for q in range(smalls, count):
-        _pair(leaver, body[q], near, shapes, fat, boxes, moved, inverse_mass)
+                        _pair(leaver, body[q], near, shapes, fat, inverse_mass)
+    for q in range(fat.counts[SMALLS], fat.counts[BODIES]):
+        _pair(leaver, body[q], near, shapes, fat, inverse_mass)
     return True
 
 
 @kernel
 def add_pairs(
     plain_near: Plain[Near], plain_motion: Plain[Motion], plain_shapes: ShapesTuple, inverse_mass: Numbers,
-    fat: Vectors, boxes: Vectors, moved: Flags, already: int, bounded: bool, bounds: Numbers,
-    first: Rows, body: Rows, home_x: Rows, home_y: Rows, found: tuple[int, int, float],
-    h: float, ahead: float, speculative_margin: float,
-) -> int:  # fmt: skip
-    """Make fat boxes again for the bodies that may leave theirs in a time h, and list their new pairs.
-
-    They are good for some three steps of four substeps ``ahead``. ``moved`` (rows,) marks those that have
-    left theirs since all were made, of which there were ``already`` so many. The index is that of
-    :func:`index_bodies`. Returns how many there are now, or -1 where all pairs must be listed again: too many
-    have left, or there is no room.
-    """
+    fat: Plain[FatBoxes], bounds: Numbers, h: float, speculative_margin: float,
+) -> bool:  # fmt: skip
+    """Do what :func:`list_leavers` describes, where Python lists pairs."""
     near, motion, shapes = named_near(plain_near), Motion(*plain_motion), named_shapes(plain_shapes)
-    index = Index(first, body, home_x, home_y, found[0], found[1], found[2])
-    rows, counts = len(motion.angle), near.counts
-    if index.bodies - index.smalls > _MAX_LARGE + rows // 16:
-        return -1
-    before = counts[PROXIMITY], counts[RECORDED], counts[SCALAR]
-    already = _add_pairs(
-        near, motion, shapes, inverse_mass, fat, boxes, moved, already, bounded, bounds, index, h, ahead,
-        speculative_margin,
-    )  # fmt: skip
-    if already < 0:
-        counts[PROXIMITY], counts[RECORDED], counts[SCALAR] = before
-    return already
+    return list_leavers(near, motion, shapes, inverse_mass, FatBoxes(*fat), bounds, h, speculative_margin)
 
 
 @inlined
-def _add_pairs(
-    near: Near, motion: Motion, shapes: Shapes, inverse_mass: Numbers, fat: Vectors, boxes: Vectors,
-    moved: Flags, already: int, bounded: bool, bounds: Numbers, index: Index, h: float, ahead: float,
-    speculative_margin: float,
+def list_leavers(
+    near: Near, motion: Motion, shapes: Shapes, inverse_mass: Numbers, fat: FatBoxes, bounds: Numbers,
+    h: float, speculative_margin: float,
+) -> bool:  # fmt: skip
+    """Make fat boxes again for the bodies that may leave theirs in a time h, and list their new pairs.
+
+    They are good for some three steps of four substeps ahead. ``bounds`` (4,) are those of the world, or
+    zero. Returns whether that was possible; otherwise all pairs must be listed again: there is no index, too
+    many have left, or there is no room.
+    """
+    rows, counts, index = len(motion.angle), near.counts, fat.counts
+    if index[NUMBER] < 0 or index[SMALLS] < 0 or SPARSE * counts[RECORDED] < rows:
+        return False
+    if index[BODIES] - index[SMALLS] > _MAX_LARGE + rows // 16:
+        return False
+    before = counts[PROXIMITY], counts[RECORDED], counts[SCALAR]
+    index[NUMBER] = _list_leavers(near, motion, shapes, inverse_mass, fat, bounds, h, speculative_margin)
+    if index[NUMBER] < 0:
+        counts[PROXIMITY], counts[RECORDED], counts[SCALAR] = before
+    return bool(index[NUMBER] >= 0)
+
+
+@inlined
+def _list_leavers(
+    near: Near, motion: Motion, shapes: Shapes, inverse_mass: Numbers, fat: FatBoxes, bounds: Numbers,
+    h: float, speculative_margin: float,
 ) -> int:  # fmt: skip
-    """Do what :func:`add_pairs` describes; where it is given up, counts are too large."""
+    """List them; return how many have left their boxes, or -1 where that is given up, counts too large."""
     rows, counts, growth = len(motion.angle), near.counts, 0.0
+    ways, boxes, moved = fat.ways, fat.boxes, fat.moved
+    already: int = fat.counts[NUMBER]
+    ahead = fat.spans[AHEAD] + fat.spans[SUBSTEPS_AHEAD] * h
     limit, usual = rows // _BODIES + counts[RECORDED] // _RECORDS, usual_speed(motion, shapes)
     for i in range(rows):
         if moved[i]:
-            growth = max(growth, fat[5, i])
+            growth = max(growth, ways[5, i])
     for i in range(rows):
-        if not left(i, motion, shapes, fat, h, _SOON * h, speculative_margin):
+        if not left(i, motion, shapes, ways, h, _SOON * h, speculative_margin):
             continue
-        if not fat[3, i] > 0.0 or (not moved[i] and already >= limit):
+        if not ways[3, i] > 0.0 or (not moved[i] and already >= limit):
             return -1
         before = boxes[i, 0], boxes[i, 1], boxes[i, 2], boxes[i, 3]
-        old = fat[0, i], fat[1, i], fat[2, i], fat[3, i], fat[4, i], fat[6, i], fat[7, i]
+        old = ways[0, i], ways[1, i], ways[2, i], ways[3, i], ways[4, i], ways[6, i], ways[7, i]
         hit = usual if inverse_mass[i] > 0.0 else 0.0
-        x0, y0, x1, y1 = fatten(i, motion, shapes, fat, ahead, hit, HIT_SHARE, speculative_margin)
-        new = fat[0, i], fat[1, i], fat[2, i], fat[3, i], fat[4, i], fat[6, i], fat[7, i]
+        x0, y0, x1, y1 = fatten(i, motion, shapes, ways, ahead, hit, HIT_SHARE, speculative_margin)
+        new = ways[0, i], ways[1, i], ways[2, i], ways[3, i], ways[4, i], ways[6, i], ways[7, i]
         if new[3] != old[3]:
             return -1
         box = min(x0, before[0]), min(y0, before[1]), max(x1, before[2]), max(y1, before[3])
         grown = max(max(before[0] - box[0], before[1] - box[1]), max(box[2] - before[2], box[3] - before[3]))
-        fat[5, i] = grown + (fat[5, i] if moved[i] else 0.0)
-        growth = max(growth, fat[5, i])
+        ways[5, i] = grown + (ways[5, i] if moved[i] else 0.0)
+        growth = max(growth, ways[5, i])
         leaver = Leaver(i, box, before, not moved[i])
         # Which long bodies it was beside goes by where it was when all pairs were listed.
-        fat[0, i], fat[1, i], fat[2, i], fat[4, i] = old[0], old[1], old[2], old[4]
-        fat[6, i], fat[7, i] = old[5], old[6]
-        done = _list_leaver(leaver, growth, index, near, shapes, fat, boxes, moved, inverse_mass)
-        if bounded and inverse_mass[i] > 0.0:
+        ways[0, i], ways[1, i], ways[2, i], ways[4, i] = old[0], old[1], old[2], old[4]
+        ways[6, i], ways[7, i] = old[5], old[6]
+        done = _list_leaver(leaver, growth, near, shapes, fat, inverse_mass)
+        if bounds[2] > bounds[0] and inverse_mass[i] > 0.0:
             _meet_walls(leaver, near, bounds)
-        fat[0, i], fat[1, i], fat[2, i], fat[4, i] = new[0], new[1], new[2], new[4]
-        fat[6, i], fat[7, i] = new[5], new[6]
+        ways[0, i], ways[1, i], ways[2, i], ways[4, i] = new[0], new[1], new[2], new[4]
+        ways[6, i], ways[7, i] = new[5], new[6]
         boxes[i, 0], boxes[i, 1], boxes[i, 2], boxes[i, 3] = box
         already += 0 if moved[i] else 1
         moved[i] = True

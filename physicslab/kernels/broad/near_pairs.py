@@ -20,8 +20,7 @@ from physicslab.kernels import (
     kernel,
 )
 from physicslab.kernels.arguments import Motion, Near
-from physicslab.kernels.broad.fat_boxes import CORNERWISE
-from physicslab.kernels.geometry.contact import ACTIVATION_RATIO
+from physicslab.kernels.geometry.margins import ACTIVATION_RATIO, CORNERWISE
 from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple, named_shapes
 from physicslab.kernels.near_counts import PROXIMITY, RECORDED, SCALAR, UNORDERED
 from physicslab.kernels.records import Couples, Manifold, Manifolds, Pairs, Points

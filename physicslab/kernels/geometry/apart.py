@@ -7,14 +7,19 @@ together have come as far. To look again earlier would find the same, so that no
 
 import math
 
-from physicslab.kernels import Vectors, inlined
-from physicslab.kernels.arguments import Motion, Near
-from physicslab.kernels.geometry.shapes import Shapes
+from physicslab.kernels import Vectors, always_inlined, inlined
+from physicslab.kernels.arguments import Bounds, Motion, Near
+from physicslab.kernels.geometry.margins import ACTIVATION_RATIO, CORNERWISE, touching_ahead
+from physicslab.kernels.geometry.shapes import Shapes, half_extents
 from physicslab.kernels.near_counts import FOLLOWED, RECORDED
+from physicslab.kernels.records import Manifold
 
 LAST_X, LAST_Y, LAST_ANGLE, PATH, REACH = range(5)
 """The rows of ``Near.travels``: where each body last was [m, rad]; how far any point of it can have come in
 the call [m]; that, and how far it comes at most in the substep at hand."""
+SINCE, NEXT, X, Y, ANGLE, VX, VY = range(7)
+"""The columns of ``Near.moments``: when a swift body had its last impact, and when it meets another next; the
+place, the angle and the velocity of each body before the impacts of the substep."""
 _WORTH_IT = 4
 """Number of bodies a pair that is apart from which all are followed."""
 _TOUCHING, _UNKNOWN = 0xFFFFFFFF, 0xFFFFFFFE
@@ -86,6 +91,41 @@ def note_touching(near: Near, p: int) -> None:
 
 
 @inlined
+def _touching_ahead(before: Vectors, i: int, shapes: Shapes, h: float, speculative_margin: float) -> float:
+    """Return how far [m] beyond its upright box body i might have had points, before the impacts."""
+    ux, uy = before[i, VX] * h, before[i, VY] * h
+    return touching_ahead(ux, uy, shapes.reach[i], shapes.radius[i], shapes.thin[i], speculative_margin)
+
+
+@inlined
+def is_sure_to_be_listed(
+    manifold: Manifold, near: Near, shapes: Shapes, bounds: Bounds, h: float, speculative_margin: float
+) -> bool:  # fmt: skip
+    """Whether a pair has a record whenever near pairs were listed, as it might have met before the impacts.
+
+    Others may have one from a list that was made for longer: that no bit depends on lists, these do not
+    count. Nor does what is near a segment of a chain, which is listed by its box.
+    """
+    a, b, wall, before = manifold.a, manifold.b, manifold.wall, near.moments
+    width_b, height_b = half_extents(shapes, b, before[b, ANGLE])
+    margin = _touching_ahead(before, b, shapes, h, speculative_margin)
+    if wall >= 0:
+        away = before[b, X + wall % 2] - bounds.walls[wall]
+        clear = (away if wall < 2 else -away) - (height_b if wall % 2 else width_b)
+        return bool(clear <= margin)
+    x, y = before[b, X] - before[a, X], before[b, Y] - before[a, Y]
+    moved = (abs(before[b, VX] - before[a, VX]) + abs(before[b, VY] - before[a, VY])) * h
+    within = ACTIVATION_RATIO * (shapes.reach[a] + shapes.reach[b]) + CORNERWISE * (
+        moved + speculative_margin
+    )
+    if wall < -1 or x * x + y * y > within * within:
+        return False
+    width_a, height_a = half_extents(shapes, a, before[a, ANGLE])
+    margin += _touching_ahead(before, a, shapes, h, speculative_margin)
+    return bool(abs(x) <= width_a + width_b + margin and abs(y) <= height_a + height_b + margin)
+
+
+@always_inlined
 def may_be_thrown_together(near: Near, p: int) -> bool:
     """Whether a pair without points has a body that an impact has changed, and none that it has left swift.
 
@@ -98,4 +138,13 @@ def may_be_thrown_together(near: Near, p: int) -> bool:
     if a == _TOUCHING:
         return False
     hit = max(changed[a], changed[b]) >= 0.0
-    return bool(hit and max(moments[a, 0], moments[b, 0]) == -math.inf)
+    return bool(hit and max(moments[a, SINCE], moments[b, SINCE]) == -math.inf)
+
+
+@inlined
+def note_motion(moments: Vectors, motion: Motion) -> None:
+    """Note where bodies are, and how they move, before impacts, as :func:`is_sure_to_be_listed` needs it."""
+    for i in range(len(moments)):
+        moments[i, X], moments[i, Y] = motion.position[i, 0], motion.position[i, 1]
+        moments[i, ANGLE] = motion.angle[i]
+        moments[i, VX], moments[i, VY] = motion.linear[i, 0], motion.linear[i, 1]

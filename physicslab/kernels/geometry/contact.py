@@ -8,21 +8,18 @@ from physicslab.kernels.constraint.pair import frame_of, inverse_mass_of, moment
 from physicslab.kernels.geometry import apart, pair
 from physicslab.kernels.geometry.bend import note_bends
 from physicslab.kernels.geometry.cores import VERTICES
+from physicslab.kernels.geometry.margins import (
+    ACTIVATION_RATIO,
+    CACHE_TOLERANCE,
+    CACHE_TURN_TOLERANCE,
+    CONTACT_MARGIN,
+    TOLERANCE_WITHIN_STEP,
+)
 from physicslab.kernels.geometry.outline import Way, is_segment, kept_outline, on_segment, swing_of
 from physicslab.kernels.geometry.shapes import Shapes, has_own_way, is_chain, segment_of
 from physicslab.kernels.near_counts import ACTIVE, FOLLOWED, SCALAR
 from physicslab.kernels.records import Manifold, Point, Points
 
-ACTIVATION_RATIO = 1.02
-"""Distance within which two bodies may have contact points, as a multiple of their bounding radii's sum."""
-CACHE_TOLERANCE = 0.004
-"""Share of the smaller box's size that a pair of boxes may move before its points are found again."""
-CACHE_TURN_TOLERANCE = 0.002
-"""How far [rad] either may turn."""
-TOLERANCE_WITHIN_STEP = 12.0
-"""Multiple of these tolerances that counts after the first substep of a step."""
-WIDE_TOLERANCE = 4.0
-"""Multiple of these tolerances after which the points of a wide contact are found again, once a step."""
 _ROWS_FOUND_AGAIN = 64
 """Number of bodies up to which points of boxes are found again after any motion."""
 _NO_MOTION = 1e-9
@@ -87,7 +84,7 @@ def _clearance_of_disc(
         return math.sqrt(square) - reach + travel if square > reach * reach else -math.inf
     away = motion.position[b, wall % 2] - bounds.walls[wall]
     clear = (away if wall < 2 else -away) - shapes.radius[b]
-    margin = ACTIVATION_RATIO * pair.CONTACT_MARGIN * shapes.radius[b] + speculative_margin
+    margin = ACTIVATION_RATIO * CONTACT_MARGIN * shapes.radius[b] + speculative_margin
     return clear - margin if clear - margin > travel else -math.inf
 
 
@@ -175,7 +172,7 @@ def _clearance(
         moved = -(x * manifold.normal_x + y * manifold.normal_y)
     turned = _swings(shapes, a, b, angle[a] - manifold.base_angle_a, angle[b] - manifold.base_angle_b)
     nearest: float = manifold.gap - moved - turned - 0.0025 * size
-    return nearest - pair.CONTACT_MARGIN * size - speculative_margin
+    return nearest - CONTACT_MARGIN * size - speculative_margin
 
 
 @always_inlined
@@ -205,7 +202,7 @@ def _look_up(
             size = min(max(half_x[a], radius[a]), max(half_x[b], radius[b]))
     moved_x, moved_y = way.dx - manifold.base_x, way.dy - manifold.base_y
     turn_a, turn_b = angle[a] - manifold.base_angle_a, angle[b] - manifold.base_angle_b
-    slow = travel <= 0.5 * pair.CONTACT_MARGIN * size
+    slow = travel <= 0.5 * CONTACT_MARGIN * size
     if manifold.found == 2 and manifold.base_sizes == of_both:
         if manifold.count == 0:
             if manifold.wall == -1 and not own_ways:
@@ -244,7 +241,7 @@ def _in_place(
         and (vertices[a] < 2 or angle[a] == manifold.base_angle_a)
         and (vertices[b] < 2 or angle[b] == manifold.base_angle_b)
         and point.normal_impulse > 0.0
-        and point.found_separation < pair.CONTACT_MARGIN * 0.5 * manifold.size + speculative_margin
+        and point.found_separation < CONTACT_MARGIN * 0.5 * manifold.size + speculative_margin
     )
 
 
@@ -367,7 +364,12 @@ def find_contacts(
         tolerance = _NO_MOTION
     for number in range(count):
         p = near.scalar[number]
-        if not apart.may_be_thrown_together(near, p) if again else apart.stays_apart(near, p):
+        if again:
+            if not apart.may_be_thrown_together(near, p):
+                continue
+            if not apart.is_sure_to_be_listed(near.manifolds[p], near, shapes, bounds, h, speculative_margin):
+                continue
+        elif apart.stays_apart(near, p):
             continue
         manifold, one, two = near.manifolds[p], near.points[2 * p], near.points[2 * p + 1]
         had_points, size = manifold.count > 0, 0.0

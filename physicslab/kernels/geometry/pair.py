@@ -6,6 +6,7 @@ from typing import NamedTuple
 from physicslab.kernels import Numbers, Vectors, inlined
 from physicslab.kernels.geometry.cores import FACE, Touch
 from physicslab.kernels.geometry.manifold import LEVEL, Corner, box_box, circle_box, circle_circle
+from physicslab.kernels.geometry.margins import CONTACT_MARGIN
 from physicslab.kernels.geometry.outline import Outline, Way, corner, is_segment, swing_of, turned
 from physicslab.kernels.geometry.segment import touch_outlines
 from physicslab.kernels.geometry.sweep import (
@@ -23,9 +24,6 @@ from physicslab.kernels.geometry.sweep import (
 )
 from physicslab.kernels.records import Manifold, Point
 
-CONTACT_MARGIN = 0.02
-"""Share of the smaller body's size within which a pair counts as near: its points are kept though they do
-not touch."""
 _JUST_MEETING = 1e-6
 """Share of the size within which two surfaces count as just meeting."""
 SWEEP_THRESHOLD = 0.002

@@ -27,6 +27,7 @@ from physicslab.kernels.constraint.pair import (
     put_velocity,
     velocity_of,
 )
+from physicslab.kernels.geometry.apart import SINCE
 from physicslab.kernels.geometry.cores import FACE
 from physicslab.kernels.geometry.impact_pose import is_known, meeting_at
 from physicslab.kernels.geometry.shapes import Shapes
@@ -272,7 +273,7 @@ def _resolve_pair(
         _shift(a, b, old, new, motion, t)
         for row in (a, b):
             if inverse.mass[row] > 0.0 and _is_swift(row, motion, shapes, inverse, acting, h):
-                moments[row, 0] = max(moments[row, 0], t)
+                moments[row, SINCE] = max(moments[row, SINCE], t)
     if manifold.swept == 1 and manifold.restitution > 0.0:
         # Its normal is not that of now: the solver must not push along it.
         one.ahead = two.ahead = 1
@@ -342,7 +343,7 @@ def _resolve_once(
         one, two = contacts.points[2 * p], contacts.points[2 * p + 1]
         if manifold.swept == 1 and one.feature >= FACE:
             noted[2 * k, SWEPT] = 1.0
-            if again and max(moments[a, 0], moments[b, 0]) > -math.inf:  # it is swept again
+            if again and max(moments[a, SINCE], moments[b, SINCE]) > -math.inf:  # it is swept again
                 one.ahead = two.ahead = 1
                 noted[2 * k, LEFT_TO_SOLVER] = 0.0
                 continue

@@ -19,6 +19,7 @@ from physicslab.kernels.arguments import Acting, Inverse, Log, Materials, Motion
 from physicslab.kernels.broad.fat_boxes import all_inside, left
 from physicslab.kernels.broad.near_pairs import comes_near, give_record, list_near, merge_tail, rank_of
 from physicslab.kernels.constraint.pair import ContactFrame, point_velocity, velocity_of
+from physicslab.kernels.geometry.apart import NEXT, SINCE
 from physicslab.kernels.geometry.contact import list_touching
 from physicslab.kernels.geometry.outline import Way, kept_outline, on_segment
 from physicslab.kernels.geometry.pair import sweep_any
@@ -39,8 +40,6 @@ _ROUNDING = 1.0 + 1e-9
 """By how many times as large circles no outline passes for rounding."""
 _RECORDED = 0xFFFFFFFF
 """In place of the second row of a proximity pair: it has the record whose number is in place of the first."""
-SINCE, NEXT = range(2)
-"""The columns of ``Near.moments``."""
 
 
 @inlined

@@ -29,6 +29,7 @@ from physicslab.kernels.arguments import (
     take_sample,
 )
 from physicslab.kernels.broad.fat_boxes import all_inside
+from physicslab.kernels.broad.leaving import FatBoxes, list_leavers
 from physicslab.kernels.clock import next_time
 from physicslab.kernels.energy import moments_of_mass, motion_totals
 from physicslab.kernels.forces.force_calls import add_forces
@@ -187,7 +188,7 @@ def _advance(
     steps: int, substep: int, part: int, plan: Plan, course: Course, cause: int,
     motion: Motion, kept: Numbers, shapes: Shapes, materials: Materials, inverse: Inverse,
     sub_integrated: Flags, acting: Acting, gravity: Gravity, packed: Packed, springs: Springs,
-    sleepers: Sleepers, damping: tuple[float, float], fat: Vectors, bounds: Bounds, near: Near,
+    sleepers: Sleepers, damping: tuple[float, float], fat: FatBoxes, bounds: Bounds, near: Near,
     joints: Joints, opened: Rows, softness: Softness, impulse_dt: float, impacts: Impacts, cost: Rows,
     sampled: Sampled,
 ) -> tuple[int, int, int, int, int, int, int, float]:  # fmt: skip
@@ -263,7 +264,7 @@ def _advance(
                     )  # fmt: skip
                 now = charge(cost, ACCELERATE, now)
             elif what == PAIRS:
-                holds = all_inside(motion, shapes, fat, span, gravity.margin)
+                holds = all_inside(motion, shapes, fat.ways, span, gravity.margin)
                 now = charge(cost, BROAD_PHASE, now)
                 why = ALL if holds else PAIRS_STALE
             elif what == FIND:
@@ -296,12 +297,12 @@ def _advance(
                 weighed = weighed and came == 0
                 now = charge(cost, RESOLVE, now)
             elif what == PAIRS_AGAIN:
-                if is_outdated(near, motion, shapes, fat, span, gravity.margin):
+                if is_outdated(near, motion, shapes, fat.ways, span, gravity.margin):
                     why = PAIRS_STALE
             elif what == LATER_IMPACTS:
                 moment = began + (substep + course.middle) * h
                 came = resolve_later_impacts(
-                    near, motion, shapes, materials, inverse, acting, fat, Log(impacts, moment, account),
+                    near, motion, shapes, materials, inverse, acting, fat.ways, Log(impacts, moment, account),
                     span, course.start * span, course.end * span, gravity.margin,
                 )  # fmt: skip
                 bounced += came
@@ -336,6 +337,11 @@ def _advance(
                 if what == OVERLAP:
                     book_stored(packed, motion, acting, inverse, account)
                     now = charge(cost, RESOLVE, now)
+            if why == PAIRS_STALE and list_leavers(
+                near, motion, shapes, gravity.inverse_mass, fat, bounds.walls, h, gravity.margin
+            ):
+                why = ALL
+                now = charge(cost, BROAD_PHASE, now)
             if why != ALL:
                 return why, done, substep, part, finished, bounced, evaluations, impulse_dt
             part += 1
@@ -380,7 +386,7 @@ def advance(
     motion: Plain[Motion], kept: Numbers, shapes: ShapesTuple, materials: Plain[Materials],
     inverse: Plain[Inverse], sub_integrated: Flags, acting: ActingTuple, gravity: Plain[Gravity],
     packed: Plain[Packed], springs: Plain[Springs], sleepers: Plain[Sleepers], damping: tuple[float, float],
-    fat: Vectors, bounds: Plain[Bounds], near: Plain[Near], joints: Plain[Joints], opened: Rows,
+    fat: Plain[FatBoxes], bounds: Plain[Bounds], near: Plain[Near], joints: Plain[Joints], opened: Rows,
     softness: Plain[Softness], impulse_dt: float, impacts: Impacts, cost: Rows, sampled: Plain[Sampled],
 ) -> tuple[int, int, int, int, int, int, int, float]:  # fmt: skip
     """Advance by ``steps`` steps, beginning at a part of a substep.
@@ -401,9 +407,9 @@ def advance(
     ended = _advance(
         steps, substep, part, Plan(*plan), along, cause, moved, kept,
         named_shapes(shapes), Materials(*materials), Inverse(*inverse), sub_integrated,
-        named_acting(acting), masses, Packed(*packed), Springs(*springs), Sleepers(*sleepers), damping, fat,
-        Bounds(*bounds), of, Joints(*joints), opened, Softness(*softness), impulse_dt, impacts, cost,
-        Sampled(*sampled),
+        named_acting(acting), masses, Packed(*packed), Springs(*springs), Sleepers(*sleepers), damping,
+        FatBoxes(*fat), Bounds(*bounds), of, Joints(*joints), opened, Softness(*softness), impulse_dt,
+        impacts, cost, Sampled(*sampled),
     )  # fmt: skip
     if not along.hooked:
         _balance(of.account, moved, masses, -1)

@@ -15,6 +15,7 @@ from physicslab.kernels.arguments import (
     Softness,
 )
 from physicslab.kernels.broad.near_pairs import list_near
+from physicslab.kernels.geometry.apart import note_motion
 from physicslab.kernels.geometry.contact import AFTER_IMPACTS, GOES_ON, find_contacts
 from physicslab.kernels.geometry.shapes import Shapes
 from physicslab.kernels.joints.blocks import Joints
@@ -96,6 +97,8 @@ def resolve_all_impacts(
     window = ImpactWindow(start, end, start - 2.0 * (end - start) if acting.any else -math.inf)
     for i in range(len(changed)):
         changed[i] = -1.0
+    if counts[ACTIVE] > 0:
+        note_motion(near.moments, motion)
     while counts[ACTIVE] > listed:
         came, counts[LEFT], energetic, lowered, sweep = resolve_impacts(
             _contacts(near), motion, shapes, inverse, acting, log, counts[LOGGED], h, window, near.moments,

@@ -7,7 +7,8 @@ from physicslab.kernels import near_counts as N
 from physicslab.kernels.arguments import Inverse, Materials, Motion, Near, named_near
 from physicslab.kernels.broad.near_pairs import sort_scalar
 from physicslab.kernels.geometry.contact import note_pose, slides_on
-from physicslab.kernels.geometry.pair import CONTACT_MARGIN, SWEEP_THRESHOLD, WIDE_SHARE
+from physicslab.kernels.geometry.margins import CONTACT_MARGIN
+from physicslab.kernels.geometry.pair import SWEEP_THRESHOLD, WIDE_SHARE
 from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple, named_shapes
 from physicslab.kernels.records import Manifold, Manifolds, Point
 from physicslab.kernels.wide.restore_slots import fill_slot, is_of_kind

@@ -15,8 +15,14 @@ from physicslab.kernels.float64x8 import (
     take_vectors,
 )
 from physicslab.kernels.geometry import contact
+from physicslab.kernels.geometry.margins import (
+    CACHE_TOLERANCE,
+    CACHE_TURN_TOLERANCE,
+    CONTACT_MARGIN,
+    WIDE_TOLERANCE,
+)
 from physicslab.kernels.geometry.outline import Way
-from physicslab.kernels.geometry.pair import CONTACT_MARGIN, SWEEP_THRESHOLD, WIDE_SHARE
+from physicslab.kernels.geometry.pair import SWEEP_THRESHOLD, WIDE_SHARE
 from physicslab.kernels.geometry.shapes import Shapes
 from physicslab.kernels.near_counts import DISC_BLOCKS, SCALAR
 from physicslab.kernels.wide.restore_slots import fill_points
@@ -101,9 +107,9 @@ def _refresh_boxes(slots: L.Slots, k: int, motion: Motion, tolerance: float) -> 
     _follow(data, at + L.TWO, x, y, nx, ny, turn_a, turn_b)
     size = take(data, at + L.SIZE)
     moved = (
-        (size_of(x) + size_of(y) > tolerance * contact.CACHE_TOLERANCE * size)
-        | (size_of(turn_a) > tolerance * contact.CACHE_TURN_TOLERANCE)
-        | (size_of(turn_b) > tolerance * contact.CACHE_TURN_TOLERANCE)
+        (size_of(x) + size_of(y) > tolerance * CACHE_TOLERANCE * size)
+        | (size_of(turn_a) > tolerance * CACHE_TURN_TOLERANCE)
+        | (size_of(turn_b) > tolerance * CACHE_TURN_TOLERANCE)
     )
     return mask_bits(moved)
 
@@ -151,7 +157,7 @@ def refresh(
     written to its records and added to the scalar pairs. The points of a pair with a box are followed; where
     it has moved, they are found again in the first substep, and it keeps its slot.
     """
-    tolerance = contact.WIDE_TOLERANCE if first else _WITHIN_STEP
+    tolerance = WIDE_TOLERANCE if first else _WITHIN_STEP
     for k in range(near.counts[DISC_BLOCKS + slots.kind]):
         lost, moved = _restless(slots, k, motion, h) if first else 0, 0
         if slots.kind == L.DISC:
