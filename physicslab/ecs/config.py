@@ -15,8 +15,15 @@ from physicslab.ecs.vector import Vector2
 GRAVITY_MODES = ("linear", "planet", "none")
 SOFTENING_LAWS = ("clamp", "plummer")
 INTEGRATORS = (
-    "auto", "symplectic_euler", "leapfrog", "rk4", "blanes_moan", "dop853", "exact", "implicit_midpoint",
-)  # fmt: skip
+    "auto",
+    "symplectic_euler",
+    "leapfrog",
+    "rk4",
+    "blanes_moan",
+    "dop853",
+    "exact",
+    "implicit_midpoint",
+)
 COLLISIONS = ("auto", "step", "exact")
 CONTACTS = ("auto", "rigid", "soft")
 MIN_TIME = 1e-100

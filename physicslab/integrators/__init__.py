@@ -14,8 +14,16 @@ __all__ = ["INTEGRATORS", "SPLIT_METHODS", "Exhausted", "Integrator", "StepTooSm
 
 INTEGRATORS: dict[str, Integrator] = {
     method.name: method
-    for method in (SYMPLECTIC_EULER, LEAPFROG, RK4, BLANES_MOAN, DOP853, EXACT, IMPLICIT_MIDPOINT)
-}
+    for method in (
+        SYMPLECTIC_EULER,
+        LEAPFROG,
+        RK4,
+        BLANES_MOAN,
+        DOP853,
+        EXACT,
+        IMPLICIT_MIDPOINT,
+    )
+}  # fmt: skip
 """Every method that can be chosen by name."""
 
 SPLIT_METHODS: dict[str, Integrator] = {**INTEGRATORS, SPRING_SPLITTING.name: SPRING_SPLITTING}

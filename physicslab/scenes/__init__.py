@@ -17,12 +17,42 @@ if TYPE_CHECKING:
 __all__ = ["SCENES", "Scene"]
 
 _NAMES = (
-    "sandbox", "drop", "bounces", "slope", "stack", "pyramid", "dominoes", "seesaw", "loop_the_loop", "pile",
-    "gas", "billiards", "newtons_cradle", "carts", "pendulum", "double_pendulum", "piston", "four_bar",
-    "gear_train", "pulleys", "bridge", "crane", "car", "catapult", "ragdoll", "spring_chain", "resonance",
-    "rocket", "floating", "droplets", "rutherford", "crossed_fields", "cyclotron", "two_planets",
+    "sandbox",
+    "drop",
+    "bounces",
+    "slope",
+    "stack",
+    "pyramid",
+    "dominoes",
+    "seesaw",
+    "loop_the_loop",
+    "pile",
+    "gas",
+    "billiards",
+    "newtons_cradle",
+    "carts",
+    "pendulum",
+    "double_pendulum",
+    "piston",
+    "four_bar",
+    "gear_train",
+    "pulleys",
+    "bridge",
+    "crane",
+    "car",
+    "catapult",
+    "ragdoll",
+    "spring_chain",
+    "resonance",
+    "rocket",
+    "floating",
+    "droplets",
+    "rutherford",
+    "crossed_fields",
+    "cyclotron",
+    "two_planets",
     "solar_system",
-)  # fmt: skip
+)
 
 
 class _Scenes(Mapping[str, "Scene"]):

@@ -21,10 +21,26 @@ from physicslab.systems.thrust import ThrustSystem
 from physicslab.systems.trail import TrailSystem
 
 PHYSICS_SYSTEMS: tuple[type[System], ...] = (
-    GravitySystem, SpringSystem, DragSystem, ThrustSystem, CoulombSystem, ElectricFieldSystem,
-    MagneticFieldSystem, MoleculeSystem, MediumSystem, IntegrateSystem, JointSystem, BroadPhaseSystem,
-    ContactSystem, SleepSystem, ResolveSystem, TrailSystem, StrobeSystem, GateSystem, BreakSystem,
-)  # fmt: skip
+    GravitySystem,
+    SpringSystem,
+    DragSystem,
+    ThrustSystem,
+    CoulombSystem,
+    ElectricFieldSystem,
+    MagneticFieldSystem,
+    MoleculeSystem,
+    MediumSystem,
+    IntegrateSystem,
+    JointSystem,
+    BroadPhaseSystem,
+    ContactSystem,
+    SleepSystem,
+    ResolveSystem,
+    TrailSystem,
+    StrobeSystem,
+    GateSystem,
+    BreakSystem,
+)
 
 
 def standard_systems() -> tuple[System, ...]:
