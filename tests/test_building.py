@@ -24,7 +24,20 @@ from desk import (
     write,
 )
 
-from physicslab.components import Drag, Mass, Material, Name, Rod, Shape, Spring, Trail, Transform, Velocity
+from physicslab.components import (
+    Drag,
+    Gear,
+    Mass,
+    Material,
+    Name,
+    Pin,
+    Rod,
+    Shape,
+    Spring,
+    Trail,
+    Transform,
+    Velocity,
+)
 from physicslab.diagnostics.warnings import find_warnings
 from physicslab.ecs.component import COMPONENTS, Component, component, field, local_components
 from physicslab.ecs.vector import Vector2
@@ -218,6 +231,18 @@ def test_two_that_are_selected_are_joined_as_far_apart_as_they_are() -> None:
     assert not world.has(made, Spring) and world.has(one, Transform)
 
 
+def test_a_gear_tells_its_torque_and_no_force() -> None:
+    world = empty_world()
+    wheels = [circle(world, (x, 0), radius=0.5) for x in (0, 1)]
+    pins = [world.spawn(Pin(b=wheel, anchor_a=(x, 0))) for x, wheel in enumerate(wheels)]
+    gear = world.spawn(Gear(pins[0], pins[1]))
+    desk = opened(world, gear)
+    assert desk.ui.rows["Gear torque"] == "0 N m" and "Gear force" not in desk.ui.rows
+    desk.window.selection.entities = (pins[0],)
+    desk.frames(SETTLED)
+    assert desk.ui.rows["Pin force"].endswith(" N")
+
+
 def test_a_body_is_hung_on_a_rod_or_from_a_spring() -> None:
     world = empty_world()
     body, weight = circle(world, (0, 0), mass=2.0), circle(world, (3, 0), mass=2.0)
@@ -228,7 +253,7 @@ def test_a_body_is_hung_on_a_rod_or_from_a_spring() -> None:
     assert desk.ui.rows["Period"] == f"{2 * math.pi * math.sqrt(1.5 / 9.81):.4g} s"
     desk.window.selection.entities = (made,)
     desk.frames(SETTLED)
-    assert desk.ui.rows["Rod force"] == "19.62 N"  # of its weight, before any step
+    assert desk.ui.rows["Rod force"] == "19.62 N" and "Rod torque" not in desk.ui.rows  # before any step
     desk.window.selection.entities = (weight,)
     desk.frames(SETTLED)
     choose(desk, "Hang, pin ...", "Hang from a spring")

@@ -12,7 +12,8 @@ from recording import RecordingCanvas
 from test_hud import frame, recorded
 
 from physicslab.cli import main
-from physicslab.components import Mass, Spring, Transform, Velocity
+from physicslab.components import Mass, Rope, Spring, Transform, Velocity
+from physicslab.diagnostics.energy import measure_account
 from physicslab.diagnostics.warnings import ModelWarning, WorstWarnings, find_warnings
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.files.scene import load_scene, save_scene
@@ -237,6 +238,22 @@ def test_what_chooses_its_steps_or_is_exact_needs_no_advice() -> None:
         world.spawn(Spring(a=bob, anchor_b=(0, 0), rest_length=0.0, stiffness=1e6))
         world.synchronise()
         assert find_warnings(world) == ()
+
+
+@pytest.mark.parametrize("contacts", ["rigid", "soft"])
+def test_a_close_passage_beside_a_rope_is_followed_by_what_chooses_its_steps_alone(contacts: str) -> None:
+    laws = PhysicsConfig(gravity_mode="planet", G=20.0, softening=0.05)
+    world = World(physics=laws, simulation=SimulationConfig(contacts=contacts))
+    star, comet = circle(world, (0, 0), radius=0.1), circle(world, (1, 0), radius=0.1, velocity=(0, 0.3))
+    world.spawn(Rope(star, comet, length=1.5))
+    circle(world, (500, 0), radius=0.1)
+    worst = WorstWarnings()
+    for _ in range(30):
+        world.step()
+        worst.add(find_warnings(world))
+    flies_apart = [warning for warning in worst.all if "omega h" in warning.what]
+    assert world.plan.contacts == contacts and bool(flies_apart) == (contacts == "soft")
+    assert contacts == "soft" or abs(measure_account(world).energy["numerical"]) < 1e-5, "of 400 J"
 
 
 def test_a_refused_choice_is_reported() -> None:

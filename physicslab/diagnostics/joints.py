@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from physicslab.components import Transform
+from physicslab.components import Gear, Transform
 from physicslab.diagnostics.present_forces import with_present_forces
 from physicslab.ecs.vector import Vector2, rotated
 from physicslab.state.joint_figures import figures_of
@@ -52,6 +52,16 @@ class JointState:
     twist: float
     largest_stretch: float
     size: float
+
+    @property
+    def has_force(self) -> bool:
+        """Whether a force says what it bears: not for a gear that turns bodies by a torque alone."""
+        return self.kind is not Gear or self.force != Vector2(0.0, 0.0)
+
+    @property
+    def has_torque(self) -> bool:
+        """Whether a torque says so, beside the force or alone."""
+        return self.torque != 0.0 or not self.has_force
 
 
 def joint_states(world: World) -> list[JointState]:

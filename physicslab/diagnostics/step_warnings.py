@@ -217,7 +217,8 @@ def lost_phase(world: World) -> tuple[int, float, float] | None:
 def _fixed_steps(world: World) -> tuple[Integrator, float] | None:
     """Return what follows forces in steps of one length, and that length [s]; ``None`` where nothing does."""
     method = world.plan
-    integrator = method.integrator if method.smooth else method.split_forces or method.stages
+    one = method.smooth or method.contacts == "rigid"  # which moves bodies between events by one method
+    integrator = method.integrator if one else method.split_forces or method.stages
     if method.collisions == "exact" or integrator.chooses_steps or math.isinf(integrator.order):
         return None
     parts = method.substeps * (2 * method.split_steps if method.split_forces else 1)

@@ -141,6 +141,8 @@ class Soft(Stepper):
             note_places(state)
             state.joints.force[:] = state.joints.impulse / (state.contacts.impulse_dt or span.h)
         self._note_energy(state)
+        for force in self._schedule.forces:
+            force.note_rate(state)
         if wanted > 1:
             self._max_steps = max(1, min(_MAX_STEPS, made * _CALL_NS // max(working_ns() - began, 1)))
         return Advance(made, parts)

@@ -1,5 +1,6 @@
 """The interface of a system: its work, at its stages, and its declarations."""
 
+import math
 from collections.abc import Callable, Mapping
 from enum import Enum
 from functools import cache
@@ -381,6 +382,15 @@ class ForceSystem(System):
         room = np.zeros((2, len(q)))
         add_forces(q, room[0], room[1], self._calls)
         return float(self._packed.parameters[0])
+
+    def note_rate(self, state: State) -> None:
+        """Note the fastest rate that the packed force met since the last call, if it measures that."""
+        if self._packed_of is None or self._packed.max_rate_slot is None:
+            return
+        met = self._packed.parameters[-1:]
+        rate = math.sqrt(met.item())
+        state.fastest_rates[self.name] = max(rate, state.fastest_rates.get(self.name, 0.0))
+        met[0] = 0.0
 
     def calls(self, state: State) -> NDArray[np.int64]:
         """Return the addresses (1, 3) of the packed force; what it is made of is looked at once a step."""

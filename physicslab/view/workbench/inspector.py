@@ -99,8 +99,9 @@ def _build_spring(ui: Ui, state: SpringState | None) -> None:
 def _build_joint(ui: Ui, joint: JointState) -> None:
     ui.rule(0.2)
     name = joint.kind.__name__
-    ui.row(f"{name} force", quantity(joint.force.magnitude, "N"), vector_quantity(joint.force, "N"))
-    if joint.torque:
+    if joint.has_force:
+        ui.row(f"{name} force", quantity(joint.force.magnitude, "N"), vector_quantity(joint.force, "N"))
+    if joint.has_torque:
         ui.row(f"{name} torque", quantity(joint.torque, "N m"))
     tip = "How far lengths and places are from what it holds: the error of the method"
     ui.row("Stretch left", quantity(without_rounding(joint.stretch, 1.0), "m"), tip)

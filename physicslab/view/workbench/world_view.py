@@ -146,7 +146,7 @@ class WorldView:
     def _draw_prompt(self, world: World, on: Drawing) -> None:
         """Write beside the cursor what the tool in hand is to be given next, or the size of what is drawn."""
         window, state, tool = self._window, self._window.measuring, TOOLS[self._window.tool]
-        idle = not (window.pointer_on_panel or window.filming.running)
+        idle = window.has_pointed and not (window.pointer_on_panel or window.filming.running)
         words = tool.prompts[min(len(state.spots), len(tool.prompts) - 1)] if tool.prompts else ""
         if window.sketch.name or not words:
             drawn = TOOLS[window.sketch.name or tool.name].draws
@@ -206,9 +206,9 @@ class WorldView:
                 return
         for joint in joint_states(world) if found is not None else ():
             if joint.entity == found:
-                words = f"{plain_kind(joint.kind)}: {quantity(joint.force.magnitude, 'N')}"
-                if joint.torque:
-                    words += f", {quantity(joint.torque, 'N m')}"
+                loads = [quantity(joint.force.magnitude, "N")] if joint.has_force else []
+                loads += [quantity(joint.torque, "N m")] if joint.has_torque else []
+                words = f"{plain_kind(joint.kind)}: {', '.join(loads)}"
                 marks.draw_selection(world, (joint.entity,), on)
                 marks.draw_reading(words, at, on, window.framing.room())
 
