@@ -312,6 +312,8 @@ class World(Facade):
             return
         if numbers and self._repeat is not None and self._repeat.holds(self, self.islands):
             self.generation += 1
+        elif not numbers and not self.stale and self.entity_index.is_synchronous():
+            self._repeat, self._behind = None, False  # a frame takes dozens of batches
         else:
             self._follow_edits(numbers)
 
