@@ -11,7 +11,7 @@ import signal
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from pathlib import Path
 
 import pytest
@@ -41,7 +41,7 @@ _BEGUN = pytest.StashKey[float]()
 _COSTS: dict[str, float] = {}
 # No deadline: the first example of a test may load kernels.
 settings.register_profile("physicslab", deadline=None, max_examples=40)
-# What is fuzzed, by .ci/run and by hand: pytest -m "" tests/test_fuzz_*.py --hypothesis-profile=thorough
+# What is fuzzed, by hand and by .ci/run: pytest -m fuzz --fuzz thorough
 settings.register_profile("thorough", deadline=None, max_examples=600)
 settings.register_profile("medium", deadline=None, max_examples=150)
 settings.load_profile("physicslab")
@@ -63,6 +63,8 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--effort", metavar="SHARE", type=_share, default=1.0, help=words)
     words = f"list tests that take longer than this [s of processor time] in {_COSTLY.name}: they are slow"
     parser.addoption("--costs", metavar="SECONDS", type=float, help=words)
+    words = "profile of Hypothesis for tests/test_fuzz_*.py: as many examples of each property as that says"
+    parser.addoption("--fuzz", metavar="PROFILE", help=words)
     words = "folder to keep a picture of each stage in when tests/test_lessons_played.py plays the lessons"
     parser.addoption("--pictures", metavar="FOLDER", type=Path, help=words)
     words = "keep what the notebooks of docs/examples show when tests/test_notebooks.py executes them"
@@ -88,6 +90,27 @@ def pytest_sessionstart(session: pytest.Session) -> None:
     if not is_warm():
         print("compiling the kernels, once (a minute of processor time)", flush=True)
         subprocess.run([sys.executable, "-m", "physicslab.kernels"], stdout=subprocess.DEVNULL, check=False)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_make_collect_report(
+    collector: pytest.Collector,
+) -> Generator[None, pytest.CollectReport, pytest.CollectReport]:
+    """Import what is fuzzed while its profile is loaded: tests keep the one of their import."""
+    profile = collector.config.getoption("--fuzz")
+    if profile is None or not (isinstance(collector, pytest.Module) and is_fuzzed(collector)):
+        return (yield)
+    before = settings.get_current_profile_name()
+    settings.load_profile(profile)
+    try:
+        return (yield)
+    finally:
+        settings.load_profile(before)
+
+
+def is_fuzzed(node: pytest.Collector | pytest.Item) -> bool:
+    """Whether a test, or a module of tests, makes random cases for as long as it may."""
+    return node.path.name.startswith("test_fuzz_")
 
 
 def pytest_collection_finish() -> None:
@@ -132,14 +155,17 @@ def pytest_sessionfinish(session: pytest.Session) -> None:
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Mark what is costly as slow, and begin with what mostly waits for a window: it fills no processor.
+    """Mark what is costly as slow, and what is fuzzed, and begin with what takes longest.
 
-    Of a test with many seeds the first ones stay, as many as the effort says.
+    That is what mostly waits for a window, which fills no processor, and then what is fuzzed. Of a test with
+    many seeds the first ones stay, as many as the effort says.
     """
     costly = set(_COSTLY.read_text(encoding="utf-8").splitlines())
     for item in items:
         if item.nodeid in costly:
             item.add_marker(pytest.mark.slow)
+        if is_fuzzed(item):
+            item.add_marker(pytest.mark.fuzz)
     seeded = [item for item in items if item.get_closest_marker("seeds") is not None]
     families: dict[str, list[pytest.Item]] = {}
     for item in seeded:
@@ -148,7 +174,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     left_out = {item for family in families.values() for item in family[math.ceil(len(family) * effort) :]}
     items[:] = [item for item in items if item not in left_out]
     config.hook.pytest_deselected(items=list(left_out))
-    items.sort(key=lambda item: "screen" not in getattr(item, "fixturenames", ()))
+    items.sort(key=lambda item: ("screen" not in getattr(item, "fixturenames", ()), not is_fuzzed(item)))
 
 
 @pytest.fixture(autouse=True)

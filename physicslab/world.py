@@ -260,13 +260,9 @@ class World(Facade):
         run_through(self, seconds, steps, at_most)
 
     def stepping(
-        self,
-        *wrong: Never,
-        seconds: float | None = None,
-        steps: int | None = None,
-        stride: int = 1,
+        self, *wrong: Never, seconds: float | None = None, steps: int | None = None, stride: int = 1,
         patience: float = math.inf,
-    ) -> Iterator[int]:
+    ) -> Iterator[int]:  # fmt: skip
         """Advance like :meth:`run`, yielding the number of steps done after every ``stride`` steps.
 
         The steps in between are one compiled loop where possible. With ``patience`` it yields also where
@@ -316,6 +312,8 @@ class World(Facade):
             return
         if numbers and self._repeat is not None and self._repeat.holds(self, self.islands):
             self.generation += 1
+        elif not numbers and not self.stale and self.entity_index.is_synchronous():
+            self._repeat, self._behind = None, False  # a frame takes dozens of batches
         else:
             self._follow_edits(numbers)
 

@@ -77,7 +77,8 @@ class LateCanvas(PygameCanvas):
 
     def paint(self, painter: Painter) -> None:
         """Let panels be drawn later; what reads the picture has it at once."""
-        if isinstance(getattr(painter, "__self__", None), Pictures | Ui):
+        drawn = painter.func if isinstance(painter, partial) else painter
+        if isinstance(getattr(drawn, "__self__", None), Pictures | Ui):
             self._due.append(partial(super().paint, painter))
         else:
             super().paint(painter)
@@ -258,12 +259,11 @@ def choose(desk: Desk, menu: str, *lines: str) -> None:
 
 
 def tap(desk: Desk, name: str, mod: int = 0) -> None:
-    """Press a key and let it go, by its name in SDL."""
+    """Press a key and let it go within a frame, as quick fingers do; by its name in SDL."""
     code = pygame.key.key_code(name)
     for kind in (pygame.KEYDOWN, pygame.KEYUP):
         pygame.event.post(pygame.Event(kind, key=code, mod=mod, unicode="", scancode=0))
-        desk.frames()
-    desk.frames(SETTLED)
+    desk.frames(SETTLED + 1)  # Dear ImGui takes what is let go a frame later
 
 
 def write(desk: Desk, text: str) -> None:

@@ -2,7 +2,7 @@
 
 A few random scenes are tried with every run of the tests, 2,000 by
 
-    pytest tests/test_fuzz_saving.py --hypothesis-profile=thorough
+    pytest -m fuzz --fuzz thorough tests/test_fuzz_saving.py
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
 A few examples are tried with every run of the tests; thousands by
 
-    pytest tests/test_fuzz_*.py --hypothesis-profile=thorough
+    pytest -m fuzz --fuzz thorough tests/test_fuzz_*.py
 """
 
 from __future__ import annotations

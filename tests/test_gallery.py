@@ -109,6 +109,18 @@ def test_letters_after_a_click_on_a_tag_are_for_the_search(desk: Desk) -> None:
     assert cards(desk) == [SCENES["solar_system"].title]
 
 
+def test_arrows_go_from_the_search_to_the_cards_and_enter_opens_one(desk: Desk) -> None:
+    """The first arrow left the search, and every other key was for a world that the gallery lay over."""
+    for _ in range(6):
+        tap(desk, "down")
+        desk.frames(SETTLED)
+    assert desk.ui.focused.startswith("Scene: ")
+    chosen = desk.ui.focused.removeprefix("Scene: ")
+    tap(desk, "return")
+    desk.frames(SETTLED)
+    assert desk.world.title == chosen and not desk.window.scenes.shows_gallery
+
+
 def test_one_esc_closes_it(desk: Desk) -> None:
     write(desk, "r")
     tap(desk, "escape")

@@ -255,6 +255,30 @@ def test_in_a_pause_a_body_goes_where_its_joints_let_it(joint: str) -> None:
     assert not list(joint_warnings(world))
 
 
+@pytest.mark.parametrize("joint", ["pin", "rod", "rope"])
+def test_while_time_runs_a_body_goes_where_its_joints_let_it_and_is_thrown_so(joint: str) -> None:
+    """It was infinitely heavy in the hand, and torn off."""
+    world = empty_world()
+    bob = box(world, (0.0, -2.0), width=0.4, height=0.4)
+    made = {"pin": Pin(b=bob, anchor_b=(0.0, 2.0)), "rod": Rod(b=bob), "rope": Rope(b=bob)}
+    world.spawn(made[joint])
+    hand, place = Hand(WindowConfig()), world.component(bob, Transform)
+    hand.take(world, bob, Vector2(0.0, -2.0), 0.0)
+    now = 0.0
+    for corner in (Vector2(4.0, 0.0), Vector2(0.0, -3.0), Vector2(-1.5, -1.0)):
+        for _ in range(90):
+            now = lead(hand, world, [corner], now)
+            assert place.position.magnitude < 2.0 + 1e-6
+            assert joint == "rope" or place.position.magnitude == pytest.approx(2.0, abs=1e-6)
+    aim = Vector2(-1.5, -1.0) if joint == "rope" else Vector2(-1.5, -1.0).normalized * 2.0
+    assert (place.position - aim).magnitude < 0.1
+    hand.release(world, Vector2(-1.5, -1.0), now, paused=False)
+    assert world.component(bob, Velocity).linear.magnitude < 0.5 and not world.has(bob, Held)
+    account = measure_account(world).energy
+    assert account["hand"] == pytest.approx(sum(account.values()) - account["joints"], abs=1e-9)
+    assert abs(account["numerical"]) < 1e-9 and (joint == "rope" or abs(account["joints"]) < 1e-9)
+
+
 def test_in_a_pause_a_wheel_on_a_pin_turns_with_the_hand() -> None:
     world = empty_world()
     wheel = circle(world, (0.0, 0.0), radius=1.0)

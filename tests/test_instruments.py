@@ -174,10 +174,18 @@ def test_what_to_do_is_written_within_the_room(monkeypatch: pytest.MonkeyPatch) 
         assert pygame.Rect(left, top, width, height).contains(words) and words.width > 200
 
 
-def pictured(tool: str) -> np.ndarray:
+def test_what_to_do_is_not_written_once_the_cursor_left_the_window() -> None:
+    """It stayed at the edge, over the scale."""
+    left_alone, left = pictured("select"), pictured("gate", leaves=True)
+    assert np.array_equal(left_alone, left)
+
+
+def pictured(tool: str, *, leaves: bool = False) -> np.ndarray:
     desk = Desk(empty_world(gravity=(0, 0)))
     desk.window.pace.paused, desk.window.tool = True, tool
     desk.move(0.0, 0.0)
+    if leaves:
+        pygame.event.post(pygame.Event(pygame.WINDOWLEAVE))
     desk.frames(3)
     left, top = desk.pixel(0.0, 0.0)
     surface = pygame.display.get_surface()

@@ -61,6 +61,7 @@ def test_a_menu_that_the_mouse_opened_goes_on_to_the_next_by_the_arrows(desk: De
         ("left", "Save"),
     ):
         keys(desk, key)
+        desk.frames()  # the next menu opens a frame after the one before is closed
         assert line in desk.ui.places and has_keys(desk)
     keys(desk, "escape")
     assert not has_keys(desk)
@@ -179,12 +180,21 @@ def test_f6_goes_from_panel_to_panel_and_escape_to_the_world(desk: Desk) -> None
     assert not has_keys(desk) and not desk.window.pace.paused
 
 
-@pytest.mark.parametrize("tool", PALETTE, ids=lambda tool: tool.name)
-def test_every_tool_of_the_palette_is_taken_up(desk: Desk, tool: Tool) -> None:
+def test_every_tool_of_the_palette_is_taken_up(desk: Desk) -> None:
     keys(desk, "f6")
     assert desk.ui.focused == PALETTE[0].title
-    keys(desk, *["down"] * PALETTE.index(tool), "return", "escape")
-    assert desk.window.tool == tool.name
+    for tool in PALETTE:
+        keys(desk, "return")
+        assert desk.window.tool == tool.name and desk.ui.focused == tool.title
+        keys(desk, "down")
+    keys(desk, "escape")
+    assert desk.world.entities() == []
+
+
+@pytest.mark.parametrize("tool", (PALETTE[0], PALETTE[5], PALETTE[-1]), ids=lambda tool: tool.name)
+def test_a_tool_that_keys_have_taken_up_stays_when_they_leave_the_palette(desk: Desk, tool: Tool) -> None:
+    keys(desk, "f6", *["down"] * PALETTE.index(tool), "return", "escape")
+    assert desk.window.tool == tool.name and not has_keys(desk)
     assert desk.world.entities() == []
 
 

@@ -9,7 +9,7 @@ from collections.abc import Callable
 import numpy as np
 import pygame
 import pytest
-from desk import SETTLED, button_down, empty_world, middle_of, point, sized, tap
+from desk import SETTLED, LateCanvas, button_down, empty_world, middle_of, point, sized, tap
 from imgui_bundle import imgui, implot
 from numpy.typing import NDArray
 
@@ -107,6 +107,26 @@ def test_a_window_that_stands_still_paints_nothing() -> None:
     painted = toolkit.pictures.painted
     desk.frames(100)
     assert toolkit.pictures.painted == painted
+
+
+def test_panels_are_painted_when_they_are_looked_at() -> None:
+    toolkit = Toolkit()
+    for words in ("first", "second"):
+        built(toolkit, words, 10)
+        kept = list(toolkit.pictures._pictures.values())
+        assert kept and not any("surface" in vars(one) for one in kept)
+    picture(toolkit)
+    assert all("surface" in vars(one) for one in kept)
+
+
+def test_a_window_of_tests_paints_a_frame_when_its_pixels_are_looked_at() -> None:
+    desk, red = sized((320, 240)), (255, 0, 0)
+    canvas = desk.window.canvas
+    assert isinstance(canvas, LateCanvas)
+    canvas._surface.fill(red)
+    point(desk, (160, 10))
+    assert canvas._surface.get_at((160, 120))[:3] == canvas._surface.get_at((160, 10))[:3] == red
+    assert canvas.surface.get_at((160, 120))[:3] != red != canvas.surface.get_at((160, 10))[:3]
 
 
 def test_figures_that_change_together_are_painted_in_turn_those_under_the_cursor_first() -> None:

@@ -18,7 +18,7 @@ from recording import RecordingCanvas
 
 from physicslab.desktop import app, compiling
 from physicslab.desktop.compiling import Compiling, Left
-from physicslab.desktop.progress import draw_progress
+from physicslab.desktop.progress import draw_corner, draw_progress
 from physicslab.ecs.config import WindowConfig
 from physicslab.kernels import cache, keys, motion, warm
 from physicslab.kernels.program import own_command
@@ -272,6 +272,16 @@ def test_the_bar_is_as_long_as_what_is_done(size: tuple[int, int]) -> None:
     frame, filled = (call["rect"] for call in canvas.called("panel"))
     assert filled[2] == round(0.25 * frame[2])
     assert "5 of 20" in canvas.words
+
+
+@pytest.mark.parametrize("size", [12, 24])
+def test_how_far_compiling_is_stands_within_the_world_beside_panels(size: int) -> None:
+    """It lay over the panel at the right, in letters of one size."""
+    canvas = RecordingCanvas((1280, 800))
+    draw_corner(canvas, DARK, 0.54, (1000, 60), size)
+    left, top, width, height = canvas.called("panel")[0]["rect"]
+    assert left + width <= 1000 and top >= 60 and height > 1.5 * size and width > 6 * size
+    assert "Compiling: 54%" in canvas.words
 
 
 def test_while_it_waits_nothing_that_the_user_does_is_forgotten() -> None:

@@ -5,7 +5,7 @@ import numpy as np
 from physicslab.components import Material, Transform, Velocity
 from physicslab.kernels import Plain
 from physicslab.kernels.arguments import ActingTuple, Bounds, Inverse, Materials, Motion, Near, Softness
-from physicslab.kernels.broad.leaving import blank_boxes
+from physicslab.kernels.broad.leaving import FatBoxes, blank_boxes
 from physicslab.kernels.geometry.shapes import ShapesTuple
 from physicslab.kernels.joints.blocks import Joints
 from physicslab.kernels.records import APART, CONSTRAINT, CONSTRAINT_POINT
@@ -92,8 +92,11 @@ _NO_VECTORS = np.zeros((0, 2))
 def do_stage(
     state: State, part: int, h: float, *, softness: Plain[Softness] = (0.0, 0.0, 0.0), first: bool = False,
     near: Plain[Near] | None = None, inverse: Plain[Inverse] | None = None,
-) -> int:  # fmt: skip
-    """Do one part of a substep, as the loop of whole steps does it; return how many impacts there were.
+    fat: Plain[FatBoxes] | None = None,
+) -> tuple[int, int]:  # fmt: skip
+    """Do one part of a substep, as the loop of whole steps does it.
+
+    Returns why the loop ended, and how many impacts there were.
 
     Parameters
     ----------
@@ -109,6 +112,8 @@ def do_stage(
         Whether it is in the first substep of a step.
     near, inverse : tuples of arrays, optional
         Pairs that take part, and the inverse masses of bodies.
+    fat : tuple of arrays, optional
+        The fat boxes, where pairs are listed.
     """
     state.compile((soft.advance,))
     near, inverse, contacts = near or near_in(state), inverse or inverse_in(state), state.contacts
@@ -119,15 +124,16 @@ def do_stage(
     plan = (
         last + 1, state.simulation.iterations or 0, h, h, state.moment, h, last if first else -1, h, loaded
     )  # fmt: skip
-    gravity = _NOTHING, _NOTHING, *inverse, 0.0, 0.0, speculative_margin(state, h), 0
+    bodies = state.bodies
+    masses = _NOTHING, _NOTHING, bodies.inverse_mass, bodies.inverse_inertia
+    gravity = *masses, 0.0, 0.0, speculative_margin(state, h), 0
     packed = _NO_VECTORS, np.zeros((0, 3), np.int64)
     rows = np.zeros(0, np.int64)
     sleepers = False, 0, none, _NOTHING, _NOTHING, none, none, rows, _NO_VECTORS, False
-    *_, impacts, _, contacts.impulse_dt = soft.advance(
+    why, *_, impacts, _, contacts.impulse_dt = soft.advance(
         1, last, 0, plan, course, -1, motion_of(state), _NOTHING, shapes_of(state), materials_of(state),
-        inverse, state.bodies.sub_integrated, acting_in(state), gravity, packed, (_NOTHING, rows), sleepers,
-        (0.0, 0.0), blank_boxes(0), bounds_of(state), near, joints_in(state), contacts.opened, softness,
-        contacts.impulse_dt, contacts.step_log, np.zeros(soft.COSTS, np.int64),
-        NOTHING_SAMPLED,
+        inverse, bodies.sub_integrated, acting_in(state), gravity, packed, (_NOTHING, rows), sleepers,
+        (0.0, 0.0), fat or blank_boxes(0), bounds_of(state), near, joints_in(state), contacts.opened,
+        softness, contacts.impulse_dt, contacts.step_log, np.zeros(soft.COSTS, np.int64), NOTHING_SAMPLED,
     )  # fmt: skip
-    return int(impacts)
+    return int(why), int(impacts)

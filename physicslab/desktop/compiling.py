@@ -222,10 +222,11 @@ class Compiling:
             draw_progress(canvas, self._theme, share, f"{done} of {total} parts")
         self._display.show()
 
-    def advance(self, theme: Theme, bottom: int | None = None) -> None:
-        """Show at the right how far it is, and load a kernel if this frame has time left for it.
+    def advance(self, theme: Theme, corner: tuple[int, int] | None = None, size: int = 12) -> None:
+        """Show how far it is, and load a kernel if this frame has time left for it.
 
-        Everything below ``bottom`` [px] stays in sight; without it the figure is in the corner.
+        It is written within the upper right ``corner`` [px] of the world, of the window where that is not
+        given, in letters of a ``size`` [px].
         """
         self._frames += 1
         self._theme = theme
@@ -233,7 +234,7 @@ class Compiling:
         if self._warmup is not None and not self._warmup.finished:
             self._progress = self._warmup.poll()
             canvas = self._display.canvas
-            draw_corner(canvas, theme, self._progress.share, canvas.size[1] if bottom is None else bottom)
+            draw_corner(canvas, theme, self._progress.share, corner or (canvas.size[0], 0), size)
         if interpreter.is_forced():
             return
         if self.scenes.notice(self._display.left):

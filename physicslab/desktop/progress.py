@@ -40,11 +40,11 @@ def draw_waiting(canvas: Canvas, theme: Theme, share: float, remark: str) -> Non
     canvas.text(remark, (middle, top + 80), TextStyle(14, theme.faint), "centre")
 
 
-def draw_corner(canvas: Canvas, theme: Theme, share: float, bottom: int) -> None:
-    """Draw at the right, above a height [px], how far compiling has come."""
-    words, style = f"Compiling: {share:.0%}", TextStyle(12, theme.faint)
+def draw_corner(canvas: Canvas, theme: Theme, share: float, corner: tuple[int, int], size: int) -> None:
+    """Draw how far compiling has come, below and left of a corner [px], in letters of a size [px]."""
+    words, style = f"Compiling: {share:.0%}", TextStyle(size, theme.faint)
     width, height = canvas.text_size("Compiling: 100%", style)
-    left, top = canvas.size[0] - width - 3 * _MARGIN, bottom - height - 3 * _MARGIN
+    left, top = corner[0] - width - 3 * _MARGIN, corner[1] + _MARGIN
     canvas.panel((left, top, width + 2 * _MARGIN, height + 2 * _MARGIN), theme.panel, theme.outline)
     canvas.text(words, (left + _MARGIN, top + _MARGIN // 2), style)
     _draw_bar(canvas, theme, left + _MARGIN, top + height + _MARGIN, width, share, _MARGIN // 2)

@@ -192,7 +192,8 @@ def _loop(sandbox: Sandbox, display: Display, compiling: Compiling) -> None:
     while not window.closing:
         drawn = sandbox.frame(elapsed)
         reader.follow(sandbox.world, window, sandbox.interface.ui)
-        compiling.advance(window.theme, sandbox.interface.layout.transport[1])
+        left, top, width, _ = window.framing.room()
+        compiling.advance(window.theme, (left + width, top), window.drawing.size - 1)
         window.preparing = compiling.seconds_left
         window.pace.max_dt = compiling.time_for_steps(window.config.max_dt)
         display.title = _title(sandbox.world, window)

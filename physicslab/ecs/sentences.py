@@ -134,6 +134,7 @@ SENTENCES = {
     "would_help": "{what}; {setting} would help",
     "no_help": "{what}; no setting is known to help",
     "no_breaking": "no joint that breaks",
+    "moved_by_hand": "no joint holds what is in the hand",
     "no_shape": "no Shape in the scene",
     "shapes_stay": "nothing that has a Shape moves",
     "one_shape": "only one Shape in the scene, and no bounds",

@@ -62,6 +62,12 @@ def lesson_in(name_or_path: str, language: str) -> Lesson:
     return lesson
 
 
+@cache
+def _own(name: str, language: str) -> Lesson:
+    """Return a lesson of the program; it is read once, as its file stays the same."""
+    return read_lesson(LIBRARY / f"{name}.md", language)
+
+
 def find_lesson(name_or_path: str, language: str = "") -> Lesson:
     """Return a lesson by its name, or from a file; its words in a language if it has them.
 
@@ -76,7 +82,7 @@ def find_lesson(name_or_path: str, language: str = "") -> Lesson:
     'How far does a ball fly?'
     """
     if name_or_path in LESSONS:
-        return read_lesson(LIBRARY / f"{name_or_path}.md", language)
+        return _own(name_or_path, language)
     if not Path(name_or_path).exists() and not name_or_path.endswith(".md"):
         likely = suggestion(name_or_path, LESSONS) or f"; the lessons are {', '.join(LESSONS)}"
         raise LessonError(f"{name_or_path}: no such file, and no lesson of this name{likely}")

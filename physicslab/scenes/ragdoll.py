@@ -12,7 +12,7 @@ _STEPS, _WIDE, _HIGH = 6, 0.6, 0.35
 
 @Scene(
     title="A ragdoll on stairs",
-    description="Joints bend as far as a person's do; impacts and friction take all the energy of the fall.",
+    description="Joints bend as far as a person's do; impacts, friction and joints take a fall's energy.",
     view=(-2.0, -0.3, 5.2, 4.4),
     moment=0.9,
     teaches=("energy", "friction", "collisions"),

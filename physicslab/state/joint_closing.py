@@ -23,13 +23,9 @@ _APART, _MOST_ROWS = 1e-9, 400
 
 
 def closing_places(
-    state: State,
-    least: float,
-    *,
-    limits: bool = False,
-    start: tuple[Numbers, Numbers] | None = None,
+    state: State, least: float, *, limits: bool = False, start: tuple[Numbers, Numbers] | None = None,
     give: Numbers | None = None,
-) -> tuple[Numbers, Numbers] | None:
+) -> tuple[Numbers, Numbers] | None:  # fmt: skip
     """Return places (rows, 2) [m] and angles (rows,) [rad] at which joints hold; ``None`` if none is found.
 
     Heavy bodies are moved least. Where light ones between them leave no way, all move as if they were equal.
@@ -101,6 +97,25 @@ def far_places(state: State, turn: float = 0.0) -> tuple[Numbers, Numbers] | Non
     return None if np.array_equal(found[0], transform["position"]) and not turn else found
 
 
+def is_joined(state: State, row: int) -> bool:
+    """Whether a joint holds the body of a row."""
+    state.joints.refresh(state.entity_index)
+    joints = state.joints
+    return bool(((joints.a == row) | (joints.b == row)).any())
+
+
+def joined_rows(state: State, row: int) -> NDArray[np.bool_]:
+    """Return which rows (rows,) joints hold together with one, that one as well; fixed bodies part them."""
+    joints = state.joints
+    found = np.zeros(len(state.entity_index), np.bool_)
+    found[row] = True
+    moves = state.bodies.inverse_mass > 0.0
+    pairs = np.stack((joints.a, joints.b), axis=1)[moves[joints.a] & moves[joints.b]]
+    while (more := pairs[found[pairs].any(axis=1) & ~found[pairs].all(axis=1)]).size:
+        found[more] = True
+    return found
+
+
 def posed_places(
     state: State, row: int, arm: tuple[float, float], way: tuple[float, float]
 ) -> tuple[Numbers, Numbers] | None:
@@ -110,10 +125,9 @@ def posed_places(
     Bodies that are joined to it follow; where they cannot, it gives way itself. ``None`` where no joint holds
     it, or no places are found.
     """
-    state.joints.refresh(state.entity_index)
-    joints, bodies, mass = state.joints, state.bodies, state.table(Mass)
-    if not len(joints) <= _MOST_ROWS or not ((joints.a == row) | (joints.b == row)).any():
+    if not is_joined(state, row) or len(state.joints) > _MOST_ROWS:
         return None
+    bodies, mass = state.bodies, state.table(Mass)
     position, angle = (state.table(Transform)[name].copy() for name in ("position", "angle"))
     position[row] += way
     give = np.stack((bodies.inverse_mass, bodies.inverse_mass, bodies.inverse_inertia), axis=1)

@@ -78,13 +78,20 @@ def _columns(state: State) -> tuple[Any, ...]:
     """Return what masses are derived from, and the arrays that receive them."""
     mass, shape, velocity, bodies = state.table(Mass), state.table(Shape), state.table(Velocity), state.bodies
     return (
-        velocity.present, mass.present, state.table(Held).present,
+        velocity.present, mass.present, _immovable(state),
         mass["mass"], mass["inertia"], mass["inertia_given"], mass["fixed_rotation"],
         *_solid(state), sizes_in(shape), REGISTER.kinds, REGISTER.extents,
         bodies.plain_shapes, velocity["angular"],
         bodies.inverse_mass, bodies.inverse_inertia,
         bodies.awake_inverse_mass, bodies.awake_inverse_inertia, state.sleep.asleep,
     )  # fmt: skip
+
+
+def _immovable(state: State) -> NDArray[np.bool_]:
+    """Return of each row (rows,) whether a hand holds it and does not yield."""
+    held = state.table(Held)
+    found: NDArray[np.bool_] = held.present & ~held["yields"] if held["yields"].any() else held.present
+    return found
 
 
 def _solid(state: State) -> tuple[NDArray[np.int64], ...]:

@@ -80,7 +80,7 @@ def _all_shaped_alike(state: State, schedule: Schedule, rows: Rows) -> bool:
 def _are_unequal(state: State, rows: Rows) -> bool:
     """Whether masses of some bodies are so unlike that a heavy one on a light one may need more substeps."""
     inverse = state.bodies.inverse_mass[rows]
-    return bool(inverse.max() > HEAVY_RATIO * inverse.min())
+    return bool(inverse.max(initial=0.0) > HEAVY_RATIO * inverse.min(initial=np.inf))
 
 
 def _why_coupled(state: State, schedule: Schedule) -> str | None:

@@ -50,7 +50,7 @@ from physicslab.systems.sleep import SleepSystem
 from physicslab.systems.system import ForceSystem, System
 
 _KERNELS = (
-    soft.advance, needed_factor, fat_boxes, leaving.index_bodies, leaving.add_pairs, grid.find_pairs,
+    soft.advance, needed_factor, fat_boxes, leaving.index_bodies, grid.find_pairs,
     near_pairs.partition, near_pairs.carry_over, near_pairs.sort_scalar, slots.list_scalar,
 )  # fmt: skip
 _COSTS: dict[type[System], int] = {
@@ -167,8 +167,7 @@ class Substeps:
                     began = time_after(span.start, span.dt, made)
                     state.moment = began + (substep + self._course[4]) * span.h
                     state.time = began + substep * span.h + self._times[part][1] * span.h
-                    self._leave(state, why, part, span.h)
-                    part += 1
+                    part += self._leave(state, why, part, span.h)
                     if self._hooked and part == len(self._parts):
                         substep, part = substep + 1, 0
                         made += substep == span.substeps
@@ -215,16 +214,19 @@ class Substeps:
         """Return the spring of contacts."""
         return (0.0, 0.0, 0.0) if self._resolve is None else self._resolve.softness(state)
 
-    def _leave(self, state: State, why: int, part: int, h: float) -> None:
-        """Do in Python what the loop has come back for."""
+    def _leave(self, state: State, why: int, part: int, h: float) -> int:
+        """Do in Python what the loop has come back for; return at how many parts further it goes on."""
         if why == soft.PYTHON:
             self._python[part](state, h)
         elif why == soft.PAIRS_STALE and self._broad_phase is not None:
+            if self._broad_phase.index_bodies(state):
+                return 0
             self._timed(self._broad_phase, self._broad_phase.list_pairs, state, h)
         elif why == soft.BLOCKS_FULL and self._contact is not None:
             self._timed(self._contact, self._contact.make_wide, state, h)
         elif why == soft.WAKE_PENDING and self._sleep is not None:
             self._timed(self._sleep, self._sleep.wake_touched_islands, state, h)
+        return 1
 
     def _end_step(self, state: State, why: int, span: Span) -> None:
         """Put islands to sleep, or bring bodies back within the bounds, at the end of a step."""

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from physicslab.systems.joint import JointSystem
     from physicslab.systems.medium import MediumSystem
     from physicslab.systems.molecule import MoleculeSystem
+    from physicslab.systems.pull import PullSystem
     from physicslab.systems.resolve import ResolveSystem
     from physicslab.systems.sleep import SleepSystem
     from physicslab.systems.spring import SpringSystem
@@ -31,8 +32,8 @@ if TYPE_CHECKING:
 __all__ = [
     "BreakSystem", "BroadPhaseSystem", "ContactSystem", "CoulombSystem", "DragSystem", "ElectricFieldSystem",
     "ForceSystem", "GateSystem", "GravitySystem", "IntegrateSystem", "JointSystem", "MagneticFieldSystem",
-    "MediumSystem", "MoleculeSystem", "ResolveSystem", "SleepSystem", "SpringSystem", "Stage", "StrobeSystem",
-    "System", "ThrustSystem", "TrailSystem", "standard_systems",
+    "MediumSystem", "MoleculeSystem", "PullSystem", "ResolveSystem", "SleepSystem", "SpringSystem", "Stage",
+    "StrobeSystem", "System", "ThrustSystem", "TrailSystem", "standard_systems",
 ]  # fmt: skip
 
 

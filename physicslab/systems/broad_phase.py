@@ -7,22 +7,15 @@ from numpy.typing import NDArray
 
 from physicslab.components import Layer, Shape, Transform, Velocity
 from physicslab.components.shape import CHAIN
-from physicslab.contacts.arguments import motion_of, near_in, shapes_of, speculative_margin
+from physicslab.contacts.arguments import do_stage, motion_of, shapes_of, speculative_margin
 from physicslab.contacts.near_pairs import partition
 from physicslab.ecs.sentences import sentence
 from physicslab.kernels import direct_entry
 from physicslab.kernels.broad import chains, grid, leaving, near_pairs
-from physicslab.kernels.broad.fat_boxes import HIT_SHARE, fat_boxes, still_holds
-from physicslab.kernels.broad.leaving import (
-    AHEAD,
-    BODIES,
-    CELL,
-    SMALLS,
-    SUBSTEPS_AHEAD,
-    FatBoxes,
-    blank_boxes,
-)
+from physicslab.kernels.broad.fat_boxes import HIT_SHARE, fat_boxes
+from physicslab.kernels.broad.leaving import AHEAD, BODIES, CELL, SMALLS, FatBoxes, blank_boxes
 from physicslab.kernels.geometry.shapes import OWN
+from physicslab.kernels.solver import soft
 from physicslab.kernels.wide import slots
 from physicslab.state.shapes import REGISTER
 from physicslab.state.solid import is_any_apart, may_touch, solid_rows
@@ -69,8 +62,8 @@ def _may_any_touch(state: State) -> bool:
     return bool((may_touch(state, a, b) & (moves[a] | moves[b])).any())
 
 
-def _lookahead(state: State, awake: int) -> tuple[float, float]:
-    """Return for how long [s] the boxes of ``awake`` bodies are made ahead, and for how many substeps more.
+def _lookahead(state: State) -> tuple[float, float]:
+    """Return for how long [s] boxes are made ahead, and for how many substeps more.
 
     Among few or many sleeping bodies, and where joints or layers keep some apart, a new list takes longer
     than the surplus pairs of an old one.
@@ -79,6 +72,7 @@ def _lookahead(state: State, awake: int) -> tuple[float, float]:
     least = _LOOKAHEAD_APART if is_any_apart(state) else _LOOKAHEAD_OF_FEW if few else 1.0
     if len(state.entity_index) <= _FEW:
         least *= _FURTHER
+    awake = int(np.count_nonzero(state.bodies.awake_inverse_mass))
     ahead = min(max(least, state.sleep.count / max(1, awake)), _MAX_LOOKAHEAD)
     simulation = state.simulation
     return (ahead * simulation.dt / simulation.substeps, 0.0) if few else (0.0, ahead)
@@ -93,7 +87,8 @@ class BroadPhaseSystem(System):
     """Keeps the list of near pairs: those whose fat boxes overlap, found with a uniform grid.
 
     The list is valid, and nothing is done, until a body leaves the fat box that was made for it. Then its
-    box grows, and its new pairs are added; when many have left, all boxes and pairs are found again.
+    box grows, and its new pairs are added, by the compiled loop of substeps; when many have left, all boxes
+    and pairs are found again.
 
     Attributes
     ----------
@@ -108,7 +103,7 @@ class BroadPhaseSystem(System):
 
     engine = True
     kernels = (
-        still_holds, fat_boxes, leaving.index_bodies, leaving.add_pairs, grid.find_pairs,
+        fat_boxes, leaving.index_bodies, grid.find_pairs,
         near_pairs.partition, near_pairs.carry_over, near_pairs.sort_scalar, slots.list_scalar,
     )  # fmt: skip
 
@@ -155,40 +150,34 @@ class BroadPhaseSystem(System):
     def search(self, state: State, h: float) -> None:
         """Update the list of near pairs, where it is not valid any more."""
         self.follow_rows(state)
-        motion, shapes = motion_of(state), shapes_of(state)
-        if not still_holds(motion, shapes, self.fat[0], h, speculative_margin(state, h)):
-            self.list_pairs(state, h)
+        while do_stage(state, soft.PAIRS, h, fat=self.fat)[0] == soft.PAIRS_STALE:
+            if not self.index_bodies(state):
+                self.list_pairs(state, h)
+                break
 
-    def list_pairs(self, state: State, h: float) -> None:
-        """Add the new pairs of the bodies that have left their fat boxes; where many have, list all again."""
-        awake, spans = state.bodies.awake_inverse_mass, FatBoxes(*self.fat).spans
-        spans[AHEAD:] = _lookahead(state, int(np.count_nonzero(awake)))
-        if not self._add_pairs(state, h):
-            ahead = float(spans[AHEAD] + spans[SUBSTEPS_AHEAD] * h)
-            self._list_all(state, awake, ahead, speculative_margin(state, h))
+    def index_bodies(self, state: State) -> bool:
+        """Sort bodies by their cells, where those that leave their fat boxes can have their new pairs listed.
 
-    def _add_pairs(self, state: State, h: float) -> bool:
-        """Add the new pairs of those bodies; return whether that was possible.
-
-        The compiled loop does so itself once there is an index.
+        The compiled loop does that itself with the index. Returns False where all pairs are to be listed
+        again: it was not possible with the index that there is, or none is worth it.
         """
         fat, vertices = FatBoxes(*self.fat), state.bodies.shapes.vertices
         if len(vertices) <= _FEW or _sparse(state) or self.crowded or state.contacts.stale:
             return False
-        if is_any_apart(state) or len(self.chains):  # which the search for new pairs does not know
+        # The search for new pairs knows nothing of what joints keep apart, nor of chains.
+        if is_any_apart(state) or len(self.chains) or fat.counts[SMALLS] >= 0:
             return False
-        if fat.counts[SMALLS] < 0:
-            fat.counts[SMALLS], fat.counts[BODIES], fat.spans[CELL] = leaving.index_bodies(
-                fat.boxes, vertices, fat.first, fat.body, fat.home_x, fat.home_y
-            )
-        added: bool = direct_entry(leaving.add_pairs)(
-            near_in(state), motion_of(state), shapes_of(state), state.bodies.inverse_mass, self.fat,
-            self.bounds, h, speculative_margin(state, h),
-        )  # fmt: skip
-        return added
+        fat.counts[SMALLS], fat.counts[BODIES], fat.spans[CELL] = direct_entry(leaving.index_bodies)(
+            fat.boxes, vertices, fat.first, fat.body, fat.home_x, fat.home_y
+        )
+        fat.spans[AHEAD:] = _lookahead(state)
+        return True
 
-    def _list_all(self, state: State, awake: NDArray[np.float64], ahead: float, margin: float) -> None:
-        """List all near pairs again."""
+    def list_pairs(self, state: State, h: float) -> None:
+        """List all near pairs again, for which there is no index then."""
+        awake, margin = state.bodies.awake_inverse_mass, speculative_margin(state, h)
+        seconds, substeps = _lookahead(state)
+        ahead = seconds + substeps * h
         share, fat = math.inf if _sparse(state) else HIT_SHARE, FatBoxes(*self.fat)
         make = direct_entry(fat_boxes)
         make(motion_of(state), shapes_of(state), awake, fat.ways, fat.boxes, ahead, share, margin)

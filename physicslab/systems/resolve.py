@@ -53,8 +53,8 @@ class ResolveSystem(System):
     @at(Stage.IMPACT)
     def resolve_impacts(self, state: State, h: float) -> None:
         """Bounce the pairs that meet within the substep."""
-        state.collisions += do_stage(state, soft.IMPACTS, h)
-        state.collisions += do_stage(state, soft.LATER_IMPACTS, h)
+        state.collisions += do_stage(state, soft.IMPACTS, h)[1]
+        state.collisions += do_stage(state, soft.LATER_IMPACTS, h)[1]
 
     @at(Stage.SOLVE)
     def solve(self, state: State, h: float) -> None:

@@ -12,6 +12,7 @@ from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.joint import JointSystem
 from physicslab.systems.medium import MediumSystem
 from physicslab.systems.molecule import MoleculeSystem
+from physicslab.systems.pull import PullSystem
 from physicslab.systems.resolve import ResolveSystem
 from physicslab.systems.sleep import SleepSystem
 from physicslab.systems.spring import SpringSystem
@@ -25,6 +26,7 @@ PHYSICS_SYSTEMS: tuple[type[System], ...] = (
     SpringSystem,
     DragSystem,
     ThrustSystem,
+    PullSystem,
     CoulombSystem,
     ElectricFieldSystem,
     MagneticFieldSystem,

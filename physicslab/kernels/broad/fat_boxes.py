@@ -54,22 +54,14 @@ def left(
     return not (reaches <= fat[4, i] and reach == fat[3, i])
 
 
-@kernel
-def still_holds(
-    plain_motion: Plain[Motion], plain_shapes: ShapesTuple, fat: Vectors, h: float, speculative_margin: float
-) -> bool:
+@inlined
+def all_inside(motion: Motion, shapes: Shapes, fat: Vectors, h: float, speculative_margin: float) -> bool:
     """Whether whatever each body may have points with in a time h meets the fat box made for it.
 
     ``fat`` (8, rows) holds the middle of the way for which it was made (x, y) and the angle, the bounding
     radius then, the margin around the way, what :mod:`physicslab.kernels.broad.leaving` keeps there, and half
     the way (x, y). ``speculative_margin`` is how far the forces may bring two bodies together within ``h``.
     """
-    return all_inside(Motion(*plain_motion), named_shapes(plain_shapes), fat, h, speculative_margin)
-
-
-@inlined
-def all_inside(motion: Motion, shapes: Shapes, fat: Vectors, h: float, speculative_margin: float) -> bool:
-    """Whether no body has left its fat box, as :func:`still_holds` describes."""
     position, angle, linear, angular = motion
     radius, reach, thin = shapes.radius, shapes.reach, shapes.thin
     places, velocities = position.reshape(position.size), linear.reshape(linear.size)

@@ -19,13 +19,12 @@ from physicslab.kernels import (
     allocating_kernel,
     always_inlined,
     inlined,
-    kernel,
 )
-from physicslab.kernels.arguments import Motion, Near, named_near
+from physicslab.kernels.arguments import Motion, Near
 from physicslab.kernels.broad.fat_boxes import HIT_SHARE, fatten, left, usual_speed
 from physicslab.kernels.broad.grid import cell_at
 from physicslab.kernels.broad.near_pairs import beside, distance_to_activate, make_blank
-from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple, named_shapes
+from physicslab.kernels.geometry.shapes import Shapes
 from physicslab.kernels.near_counts import PROXIMITY, RECORDED, SCALAR, UNORDERED
 
 _BODIES, _RECORDS = 20, 8
@@ -54,7 +53,7 @@ CELL, AHEAD, SUBSTEPS_AHEAD = range(3)
 class FatBoxes(NamedTuple):
     """Fat boxes, which bodies have left theirs since all were made, and the index to find their neighbours.
 
-    ``ways`` (8, rows) is as in :func:`~physicslab.kernels.broad.fat_boxes.still_holds`; the ``boxes`` (rows,
+    ``ways`` (8, rows) is as in :func:`~physicslab.kernels.broad.fat_boxes.all_inside`; the ``boxes`` (rows,
     4) are xmin, ymin, xmax, ymax [m]; ``moved`` (rows,) marks those that have left theirs.
 
     The index has bodies by the cells of their boxes' centres, of a level that fits them, and then those too
@@ -226,16 +225,6 @@ def _list_leaver(
     for q in range(fat.counts[SMALLS], fat.counts[BODIES]):
         _pair(leaver, body[q], near, shapes, fat, inverse_mass)
     return True
-
-
-@kernel
-def add_pairs(
-    plain_near: Plain[Near], plain_motion: Plain[Motion], plain_shapes: ShapesTuple, inverse_mass: Numbers,
-    fat: Plain[FatBoxes], bounds: Numbers, h: float, speculative_margin: float,
-) -> bool:  # fmt: skip
-    """Do what :func:`list_leavers` describes, where Python lists pairs."""
-    near, motion, shapes = named_near(plain_near), Motion(*plain_motion), named_shapes(plain_shapes)
-    return list_leavers(near, motion, shapes, inverse_mass, FatBoxes(*fat), bounds, h, speculative_margin)
 
 
 @inlined

@@ -3,7 +3,7 @@
 import unicodedata
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import partial
+from functools import lru_cache, partial
 
 from physicslab.components.quantities import QUANTITIES
 from physicslab.ecs.text import printable
@@ -119,12 +119,17 @@ def find(text: str, among: list[Command], said: Language) -> list[Command]:
 _UMLAUTS = str.maketrans({"ä": "ae", "ö": "oe", "ü": "ue"})
 
 
+_KEPT = 8192
+"""How many texts are kept as they are searched: every letter that is typed searches all of them."""
+
+
 def spellings(text: str, said: Language) -> set[str]:
     """Return how people may write a text, in English and as it is said: an umlaut by one letter or two."""
     shown = said.reword(text).casefold()
     return {plain(text), plain(shown), shown.translate(_UMLAUTS)}
 
 
+@lru_cache(_KEPT)
 def plain(text: str) -> str:
     """Return a text in small letters, without the marks above them.
 

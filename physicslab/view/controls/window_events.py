@@ -89,6 +89,7 @@ class WindowEvents:
             pygame.WINDOWFOCUSLOST: self._leave,
             pygame.WINDOWMINIMIZED: self._leave,
             pygame.WINDOWHIDDEN: self._leave,
+            pygame.WINDOWLEAVE: lambda world, event: window.put("pointer_on_panel", True),
             pygame.QUIT: lambda world, event: window.put("closing", True),
         }
 

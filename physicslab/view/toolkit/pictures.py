@@ -4,6 +4,7 @@ import ctypes
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -36,13 +37,35 @@ class _Sheet:
     box: pygame.Rect
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class _Picture:
-    """A painted picture, its surface, and the number painted before."""
+    """A draw list as it is painted when it is looked at, the textures of then, and the number painted before.
+
+    Panels are built several times after each event, and seen once.
+    """
 
     sheet: _Sheet
-    surface: pygame.Surface
+    textures: dict[int, NDArray[np.uint8]]
     number: int
+
+    @cached_property
+    def surface(self) -> pygame.Surface:
+        """The painted picture."""
+        box = self.sheet.box
+        surface = pygame.Surface(box.size, pygame.SRCALPHA, 32, _MASKS)
+        pixels = np.frombuffer(surface.get_buffer(), np.uint32).reshape(box.h, -1)
+        vertices = np.frombuffer(bytearray(self.sheet.vertices), np.float32).reshape(-1, 5)
+        vertices[:, :2] -= box.topleft
+        indices = np.frombuffer(bytearray(self.sheet.indices), np.uint32)
+        for first, count, offset, texture, (x0, y0, x1, y1) in self.sheet.commands:
+            clip = pygame.Rect(int(x0), int(y0), int(x1) - int(x0), int(y1) - int(y0)).clip(box)
+            clip.move_ip(-box.x, -box.y)
+            paint_triangles(
+                pixels, vertices, vertices.view(np.uint32), indices, first, count, offset,
+                self.textures[texture], clip.left, clip.top, clip.right, clip.bottom,
+            )  # fmt: skip
+        del pixels  # or the surface stays locked
+        return surface
 
 
 class Pictures:
@@ -126,26 +149,10 @@ class Pictures:
             texture.set_status(imgui.ImTextureStatus.ok)
 
     def _paint(self, name: str) -> None:
-        """Paint what there is to see under a name, unless the painter is not there yet."""
-        if not _can_paint():
-            return
-        sheet = self._sheets[name]
-        box = sheet.box
-        surface = pygame.Surface(box.size, pygame.SRCALPHA, 32, _MASKS)
-        pixels = np.frombuffer(surface.get_buffer(), np.uint32).reshape(box.h, -1)
-        vertices = np.frombuffer(bytearray(sheet.vertices), np.float32).reshape(-1, 5)
-        vertices[:, :2] -= box.topleft
-        indices = np.frombuffer(bytearray(sheet.indices), np.uint32)
-        for first, count, offset, texture, (x0, y0, x1, y1) in sheet.commands:
-            clip = pygame.Rect(int(x0), int(y0), int(x1) - int(x0), int(y1) - int(y0)).clip(box)
-            clip.move_ip(-box.x, -box.y)
-            paint_triangles(
-                pixels, vertices, vertices.view(np.uint32), indices, first, count, offset,
-                self._textures[texture], clip.left, clip.top, clip.right, clip.bottom,
-            )  # fmt: skip
-        del pixels  # or the surface stays locked
-        self._pictures[name] = _Picture(sheet, surface, self.painted)
-        self.painted += 1
+        """Have what there is to see under a name painted, unless the painter is not there yet."""
+        if _can_paint():
+            self._pictures[name] = _Picture(self._sheets[name], dict(self._textures), self.painted)
+            self.painted += 1
 
 
 def _can_paint() -> bool:

@@ -318,6 +318,7 @@ _MENUS = "##MainMenuBar"
 """The window that Dear ImGui has the menus in; the mark of the keys is put on a menu where they are built."""
 _FLAGS = imgui.WindowFlags_
 _ARROWS = (pygame.K_LEFT, pygame.K_RIGHT, pygame.K_UP, pygame.K_DOWN)
+_OUT_OF_A_LINE = {pygame.K_UP: imgui.Dir.up, pygame.K_DOWN: imgui.Dir.down}
 _ENTER = (pygame.K_RETURN, pygame.K_KP_ENTER)
 _INERT = _FLAGS.no_nav_inputs | _FLAGS.tooltip | _FLAGS.popup
 
@@ -356,7 +357,7 @@ class Walk:
         return names[walked % len(names)] if names else ""
 
     def follow(self, event: pygame.Event) -> None:
-        """Begin where Tab leaves a field, and end at a click or Esc; before panels take the event.
+        """Begin where Tab or an arrow leaves a field, and end at a click or Esc; before panels take it.
 
         Enter in a field gives the keys back, too, where they came to the panel by a field alone.
         """
@@ -368,7 +369,7 @@ class Walk:
             if window is not None and window.root_window_popup_tree.name == _MENUS:
                 self._panel, toolkit.walked = _MENUS, True  # of a menu that the mouse opened, too
                 self._goes_on = key in _ARROWS[:2]
-        elif event.type == pygame.KEYDOWN and key == pygame.K_TAB and toolkit.typing:
+        elif event.type == pygame.KEYDOWN and toolkit.typing and (key == pygame.K_TAB or _leaves_field(key)):
             window = imgui.get_current_context().nav_window
             if window is not None:  # None where a press in the world has just ended the writing
                 self._panel = str(window.root_window.name)
@@ -410,6 +411,12 @@ class Walk:
             self._ends = self._from_field = toolkit.walked = False
         if is_alone and not toolkit.has_keys:
             imgui.set_nav_cursor_visible(False)
+
+
+def _leaves_field(key: int) -> bool:
+    """Whether an arrow goes from the field that is written in to the widget above or below it."""
+    kept = imgui.get_current_context().active_id_using_nav_dir_mask  # it moves within more than one line
+    return key in _OUT_OF_A_LINE and not kept & (1 << _OUT_OF_A_LINE[key])
 
 
 def _has_widgets(window: imgui.internal.Window) -> bool:

@@ -16,14 +16,15 @@ from physicslab.ecs.component import Component
 from physicslab.ecs.config import WindowConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.history import AddComponent, Command, RemoveComponent, SetField
-from physicslab.state.joint_closing import posed_places
+from physicslab.state.joint_closing import is_joined, joined_rows, posed_places
 from physicslab.view.window.placing import free_way, outlines_of, way_within
 from physicslab.world import World
 
 _ALONG, _MAX_BEHIND = 0.3, 24
 """A body is behind another where the way to it points at least so much along; so many are looked at."""
 _WEIGHTS, _EARTH = 20.0, 9.81
-"""The hand is as strong as so many times the weight of what it holds, on the Earth [m/s^2]."""
+"""The hand is as strong as so many times the weight of what it holds, and what is joined to that, on the
+Earth [m/s^2]."""
 _PRESSED, _COMING_OUT = 0.04, 0.3
 """Share of its size by which a body that is pushed may be overlapped; deeper, and where it cannot be pushed,
 so much of the overlap is given back in a frame."""
@@ -33,6 +34,8 @@ _PASSES = 4
 """How often the limits of several neighbours are gone through."""
 _POSED = 1e-7
 """How far joints must let a body move, or turn, for it to be moved in a pause [m or rad]."""
+_PULLED = 0.3
+"""Share of the way to the hand that what joints hold is pulled in a frame, lest what it carries swings."""
 _THROWN = 0.5
 """Speed [m/s] from which a body that is let go counts as thrown."""
 _MIN_THROW_TIME = 0.03
@@ -148,7 +151,7 @@ class Hand:
 
     A held body carries :class:`Held`: contacts and forces find it infinitely heavy, and it goes where the
     hand goes. Its velocity is set so that it arrives there in the time that is about to be simulated; so what
-    it hits on the way is pushed, not jumped over.
+    it hits on the way is pushed, not jumped over. One that joints hold keeps its mass, and is pulled.
 
     Parameters
     ----------
@@ -198,9 +201,12 @@ class Hand:
         transform, velocity = world.component(entity, Transform), world.component(entity, Velocity)
         grip = (place - transform.position).rotated(-transform.angle)
         self._before, self._loose_at = (velocity.linear, velocity.angular), None
-        self._set(world, entity, Velocity, "linear", Vector2())
-        self._set(world, entity, Velocity, "angular", 0.0)
-        self.write(world, AddComponent(entity, Held(grip)))
+        world.synchronise()
+        yields = world.has(entity, Mass) and is_joined(world, world.entity_index.row_of[entity])
+        if not yields:
+            self._set(world, entity, Velocity, "linear", Vector2())
+            self._set(world, entity, Velocity, "angular", 0.0)
+        self.write(world, AddComponent(entity, Held(grip, yields=yields)))
         world.edited()
 
     def loosen(self, world: World) -> None:
@@ -252,17 +258,45 @@ class Hand:
         transform = world.component(self.entity, Transform)
         grip = world.component(self.entity, Held).grip.rotated(transform.angle)
         gap = self._path[-1].place - transform.position - grip
+        yields = world.component(self.entity, Held).yields
+        if coming > 0.0 and yields:
+            self._pull(world, self.entity, grip, gap, coming)
+            return
         if coming > 0.0:
             gap = _yielding(world, self.entity, gap / coming, coming) * coming
         gap = free_way(world, self.entity, way_within(world, self.entity, gap))
-        self._set(world, self.entity, Velocity, "angular", 0.0)
+        if not yields:
+            self._set(world, self.entity, Velocity, "angular", 0.0)
         if coming > 0.0:
             self._set(world, self.entity, Velocity, "linear", gap / coming)
             self._was_moved_by_time = True
         elif paused:
-            self._set(world, self.entity, Velocity, "linear", Vector2())
+            if not yields:
+                self._set(world, self.entity, Velocity, "linear", Vector2())
             if gap:
                 self._pose(world, self.entity, gap)
+
+    def _pull(self, world: World, entity: int, arm: Vector2, gap: Vector2, coming: float) -> None:
+        """Pull a body that joints hold, by a point at ``arm`` [m] that is a ``gap`` [m] from the hand.
+
+        The force would give the point, if it were free, a velocity towards the hand in place of the one that
+        it has. It is no greater than the hand is strong, and what brakes half of that: far from the hand,
+        too, a body comes to rest. Joints, walls and floors hold as if it were in no hand.
+        """
+        world.synchronise()
+        row, velocity = world.entity_index.row_of[entity], world.component(entity, Velocity)
+        inverse, turning = float(world.bodies.inverse_mass[row]), float(world.bodies.inverse_inertia[row])
+        across, carried = arm.perpendicular, world.table(Mass)["mass"][joined_rows(world, row)].sum()
+        wanted = _limited(gap * (_PULLED / coming), self._config.max_throw_speed)
+        moves, strength = velocity.linear + across * velocity.angular, _WEIGHTS * _EARTH * float(carried)
+        pull = Vector2()
+        for change, most in ((wanted, strength), (-moves, 0.5 * strength)):
+            # Across the arm it takes less than m: (1/m + r r/I) J = change.
+            lighter = across.dot(change) * turning / (inverse + turning * arm.dot(arm))
+            force = (change - across * lighter) / (inverse * coming)
+            pull += _limited(force, most)
+        self._set(world, entity, Held, "pull", pull)
+        self._was_moved_by_time = True
 
     def _pose(self, world: World, entity: int, way: Vector2) -> None:
         """Move a body by a way [m] while time stands still, and what joints hold together with it."""
@@ -293,6 +327,8 @@ class Hand:
         if self.entity is not None and world.has(self.entity, Held):
             if paused:
                 self._put_back_velocity(world, self.entity)
+            elif world.component(self.entity, Held).yields:  # it has the velocity that joints let it have
+                self.throws += world.component(self.entity, Velocity).linear.magnitude > _THROWN
             else:
                 thrown = self._throw()
                 self.throws += thrown.magnitude > _THROWN
@@ -301,7 +337,12 @@ class Hand:
         self._let_go(world)
 
     def _put_back_velocity(self, world: World, entity: int) -> None:
-        """Give a body the velocity with which it was taken; none where time ran meanwhile."""
+        """Give a body the velocity with which it was taken; none where time ran meanwhile.
+
+        One that yields keeps what time gave it.
+        """
+        if self._was_moved_by_time and world.component(entity, Held).yields:
+            return
         linear, angular = (Vector2(), 0.0) if self._was_moved_by_time else self._before
         self._set(world, entity, Velocity, "linear", linear)
         self._set(world, entity, Velocity, "angular", angular)
@@ -343,6 +384,9 @@ class Hand:
         span = last.time - first.time
         if span < _MIN_THROW_TIME:
             return Vector2()
-        velocity = (last.place - first.place) / span
-        fastest = self._config.max_throw_speed
-        return velocity if velocity.magnitude <= fastest else velocity.normalized * fastest
+        return _limited((last.place - first.place) / span, self._config.max_throw_speed)
+
+
+def _limited(vector: Vector2, most: float) -> Vector2:
+    """Return a vector, no longer than so much."""
+    return vector if vector.magnitude <= most else vector.normalized * most

@@ -120,8 +120,8 @@ class Window:
     pointer : tuple of two floats
         Where the cursor is [px].
     pointer_on_panel, pointer_beside_panel, has_pointed : bool
-        Whether the cursor is on a panel, whether on one or so near that nothing is begun there, and whether
-        it was ever moved.
+        Whether the cursor is on a panel or outside the window, whether on one or so near that nothing is
+        begun there, and whether it was ever moved.
     gravity_before : str
         The mode that gravity goes back to after planet mode.
     spawned : int

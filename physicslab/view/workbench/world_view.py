@@ -146,7 +146,7 @@ class WorldView:
     def _draw_prompt(self, world: World, on: Drawing) -> None:
         """Write beside the cursor what the tool in hand is to be given next, or the size of what is drawn."""
         window, state, tool = self._window, self._window.measuring, TOOLS[self._window.tool]
-        idle = not (window.pointer_on_panel or window.filming.running)
+        idle = window.has_pointed and not (window.pointer_on_panel or window.filming.running)
         words = tool.prompts[min(len(state.spots), len(tool.prompts) - 1)] if tool.prompts else ""
         if window.sketch.name or not words:
             drawn = TOOLS[window.sketch.name or tool.name].draws
