@@ -17,13 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.kernels.forces.pairwise import attract_pairwise, depth_of_pairs
-from physicslab.kernels.forces.tree_pull import (
-    MAX_ERROR,
-    RMS_ERROR,
-    THETA,
-    attract_by_tree,
-    depth_by_tree,
-)
+from physicslab.kernels.forces.tree_pull import MAX_ERROR, RMS_ERROR, THETA, attract_by_tree, depth_by_tree
 from physicslab.lab.case import cpu_time
 
 type Array = NDArray[np.float64]

@@ -260,13 +260,9 @@ class World(Facade):
         run_through(self, seconds, steps, at_most)
 
     def stepping(
-        self,
-        *wrong: Never,
-        seconds: float | None = None,
-        steps: int | None = None,
-        stride: int = 1,
+        self, *wrong: Never, seconds: float | None = None, steps: int | None = None, stride: int = 1,
         patience: float = math.inf,
-    ) -> Iterator[int]:
+    ) -> Iterator[int]:  # fmt: skip
         """Advance like :meth:`run`, yielding the number of steps done after every ``stride`` steps.
 
         The steps in between are one compiled loop where possible. With ``patience`` it yields also where

@@ -28,12 +28,7 @@ from physicslab.world import World
 
 __all__ = ["MOTION", "Driver", "bits", "box_of_discs", "state_hash"]
 
-MOTION = (
-    (Transform, "position"),
-    (Transform, "angle"),
-    (Velocity, "linear"),
-    (Velocity, "angular"),
-)
+MOTION = ((Transform, "position"), (Transform, "angle"), (Velocity, "linear"), (Velocity, "angular"))
 
 
 def bits(world: World) -> list[bytes]:

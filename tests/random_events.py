@@ -211,13 +211,7 @@ class Hands:
         history, world = window.edits.history, desk.world
         before, count = self._state(), len(history.entries)
         at_end = history.step_count == history.steps_range[1] and history.position == count
-        edits = (
-            actions.clear,
-            duplicate_selected,
-            actions.toggle_gravity,
-            remove_selected,
-            paste,
-        )
+        edits = (actions.clear, duplicate_selected, actions.toggle_gravity, remove_selected, paste)
         self._random.choice(edits)(world, window)
         made = len(history.entries) - count
         self.done[-1] += f" {made}"

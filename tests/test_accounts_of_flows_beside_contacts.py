@@ -138,10 +138,7 @@ def test_a_step_that_is_begun_again_by_another_method_is_booked_once() -> None:
     one = {"id": "one", **body(7.1, 6.4, 2.7), "Shape": {"kind": "circle", "radius": 0.35}}
     two = {"id": "two", **body(5.4, 7.6, 1.0), "Shape": capsule}
     pin = {"Pin": {"a": "one", "b": "two", "anchor_a": [1.8, -0.8], "anchor_b": [0.4, -0.1]}}
-    one["Thrust"] = {
-        "force": [0.0, 1.0],
-        "frequency": 1e6,
-    }  # dop853 finds no step that is short enough
+    one["Thrust"] = {"force": [0.0, 1.0], "frequency": 1e6}  # dop853 finds no step that is short enough
     document = scene(one, two, pin)
     document["simulation"] = {}
     world, account = after(document, 3)

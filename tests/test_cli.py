@@ -236,10 +236,7 @@ USAGE = [
     (["run", "drop", "--seconds", "-1"], "argument --seconds: '-1': must be a finite number >= 0 s"),
     (["run", "drop", "--seconds", "inf"], "argument --seconds: 'inf': must be a finite number >= 0 s"),
     (["run", "drop", "--seconds", "1e300"], "--seconds 1e+300: must be at most 1e+15 steps of dt"),
-    (
-        ["run", "drop", "--seconds", "1e300", "--dt", "1e-30"],
-        "--seconds 1e+300: must be at most 1e+15 steps",
-    ),
+    (["run", "drop", "--seconds", "1e300", "--dt", "1e-30"], "--seconds 1e+300: must be at most 1e+15 steps"),
     (["run", "drop", "--steps", "1.5"], "argument --steps: '1.5': must be a whole number >= 0"),
     (["run", "drop", "--steps", "-1"], "argument --steps: '-1': must be a whole number >= 0"),
     (["run", "drop", "--steps", "9" * 400], "must be a whole number >= 0, at most 1e+15"),

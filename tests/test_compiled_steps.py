@@ -93,12 +93,7 @@ def figures(world: World) -> tuple[object, ...]:
     calls = {name: timing.calls for name, timing in timings if name not in {*LOOKING, *sampled}}
     counts = world.steps, world.collisions, world.force_evaluations, world.step_divisions, world.substeps
     contacts = world.contacts
-    near = (
-        contacts.candidate_pairs,
-        contacts.count,
-        contacts.impulse_dt,
-        contacts.max_penetration,
-    )
+    near = (contacts.candidate_pairs, contacts.count, contacts.impulse_dt, contacts.max_penetration)
     return (*counts, *near, kept_contacts(contacts), world.bodies.force.tobytes(), calls)
 
 
@@ -181,9 +176,7 @@ def test_it_leaves_for_the_blocks_in_the_middle_of_a_step() -> None:
 
 
 @pytest.mark.parametrize("seed", [(163, 3), (163, 14), (162, 7)])
-def test_pairs_that_stay_apart_in_a_step_are_passed_over_with_the_same_bits(
-    seed: tuple[int, int],
-) -> None:
+def test_pairs_that_stay_apart_in_a_step_are_passed_over_with_the_same_bits(seed: tuple[int, int]) -> None:
     """Where a system looks at substeps, all pairs are looked at in each of them."""
     stepped, ran = watched(random_scene(*seed)[0].build()), random_scene(*seed)[0].build()
     stepped.run(steps=90)

@@ -34,9 +34,7 @@ from physicslab.history import (
     SetSimulation,
     Spawn,
 )
-from physicslab.history import (
-    places as places_module,
-)
+from physicslab.history import places as places_module
 from physicslab.history.keyframes import _FRAME, _OBJECT
 from physicslab.lab.bench.catalogue import SCENES
 from physicslab.state.masses import Diverged

@@ -103,10 +103,7 @@ def test_what_is_absurd_is_saved_without_a_warning_of_numpy() -> None:
 
 HEAVY = {"Mass": {"mass": 1e200}}
 TOO_LARGE = [
-    (
-        changed(BOX, Shape={"width": 1e60}, **HEAVY),
-        "Shape.width = 1e+60: must be smaller: the moment of",
-    ),
+    (changed(BOX, Shape={"width": 1e60}, **HEAVY), "Shape.width = 1e+60: must be smaller: the moment of"),
     (changed(BALL, Shape={"radius": 1e80}, **HEAVY), "Shape.radius = 1e+80: must be smaller"),
     (
         changed(BOX, Shape={"height": 1e308}),

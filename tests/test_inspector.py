@@ -505,10 +505,7 @@ def test_the_friction_and_the_restitution_of_a_pair_are_written() -> None:
 def test_a_body_has_its_colour_in_the_microscope() -> None:
     a, b = (Body(n, 1.0, 1.0, Vector2(), 0.0, REST, REST) for n in (3, 5))
     wall = Body(1, 0.0, 0.0, Vector2(), 0.0, REST, REST)
-    for one, other, colours in (
-        (a, b, (DARK.body(3), DARK.body(5))),
-        (wall, b, (DARK.static, DARK.body(5))),
-    ):
+    for one, other, colours in ((a, b, (DARK.body(3), DARK.body(5))), (wall, b, (DARK.static, DARK.body(5)))):
         assert colours_of(World(), DARK, SimpleNamespace(a=one, b=other)) == colours  # type: ignore[arg-type]
     first, second = colours_of(World(), DARK, SimpleNamespace(a=a, b=a))  # type: ignore[arg-type]
     assert first == DARK.body(3) != second

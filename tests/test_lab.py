@@ -80,8 +80,7 @@ def test_every_document_names_its_format_and_the_machine() -> None:
 
 
 @pytest.mark.parametrize(
-    ("command", "names"),
-    [("stability", list(CASES)), ("bench", list(SCENES)), ("accuracy", list(PROBLEMS))],
+    ("command", "names"), [("stability", list(CASES)), ("bench", list(SCENES)), ("accuracy", list(PROBLEMS))]
 )
 def test_names_are_listed_and_nothing_is_run(
     command: str, names: list[str], capsys: pytest.CaptureFixture[str]

@@ -40,9 +40,7 @@ def pool(
 ) -> World:  # fmt: skip
     """Return a world with a box of fluid, whose surface is at y = 0."""
     world = World(
-        *standard_systems(),
-        physics=PhysicsConfig(**(laws or {})),
-        simulation=SimulationConfig(**simulation),
+        *standard_systems(), physics=PhysicsConfig(**(laws or {})), simulation=SimulationConfig(**simulation)
     )
     fluid = Medium(density, viscosity, quadratic, flow)
     world.spawn(Transform((0.0, -0.5 * size[1])), Shape.box(*size), fluid, name="pool")

@@ -152,10 +152,7 @@ def test_a_step_that_fails_takes_the_remainders_back() -> None:
             r'remainders\[0\]\[0\] = "b": must be the id of an entity with Transform',
         ),
         ([[1, 0, 0, 0, 0, 0, 0]], r"remainders\[0\]\[0\] = 1: must be the id"),
-        (
-            [["a", 0, 0, 0, 0, 0, 0]] * 2,
-            r'remainders\[1\]\[0\] = "a": must be an id that has none yet',
-        ),
+        ([["a", 0, 0, 0, 0, 0, 0]] * 2, r'remainders\[1\]\[0\] = "a": must be an id that has none yet'),
         (
             [["a", 1e-15, 0, 0, 0, 0, 0]],
             r"remainders\[0\]\[1\] = 1e-15: must be at most 2.22045e-16, the last",

@@ -30,9 +30,7 @@ G = 9.81
 
 def laboratory(contacts: str, **physics: Any) -> World:
     return World(
-        *standard_systems(),
-        physics=PhysicsConfig(**physics),
-        simulation=SimulationConfig(contacts=contacts),
+        *standard_systems(), physics=PhysicsConfig(**physics), simulation=SimulationConfig(contacts=contacts)
     )
 
 

@@ -203,10 +203,7 @@ SPOILT: list[tuple[Callable[[World], Any], str]] = [
         lambda w: esper.create_entity(Transform(), Name("")),
         'entity 2: id = "": must be a text that is not empty',
     ),
-    (
-        lambda w: w.spawn(Transform(), Spring(1, 99), entity=9),
-        "Spring.b = 99: must be an entity",
-    ),
+    (lambda w: w.spawn(Transform(), Spring(1, 99), entity=9), "Spring.b = 99: must be an entity"),
     (lambda w: setattr(w, "time", -1.0), "time = -1.0: must be a finite number >= 0 s"),
     (lambda w: setattr(w, "title", "\ud800"), 'title = "\\ud800": must be a text'),
 ]

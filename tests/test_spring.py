@@ -218,13 +218,7 @@ def test_another_body_may_come_before_the_next_step_when_that_of_a_spring_is_gon
     assert world.entities() == [ends[1], new] and not world.has(spring, Spring)
 
 
-@pytest.mark.parametrize(
-    ("spring", "field", "value"),
-    [
-        (Spring(1, 2), "b", 2),
-        (Spring(None, 1), "a", 3),
-    ],
-)
+@pytest.mark.parametrize(("spring", "field", "value"), [(Spring(1, 2), "b", 2), (Spring(None, 1), "a", 3)])
 def test_an_end_that_is_no_body_is_refused_by_name(spring: Spring, field: str, value: int) -> None:
     world = springs()
     ball, _without_transform = world.spawn(Transform()), world.spawn(Velocity())

@@ -343,8 +343,7 @@ def test_drag_alone_is_followed_to_the_formula(linear: float, quadratic: float) 
 
 
 @given(
-    ends=st.lists(st.tuples(st.integers(0, 12), st.integers(0, 12)), max_size=60),
-    moving=st.integers(0, 13),
+    ends=st.lists(st.tuples(st.integers(0, 12), st.integers(0, 12)), max_size=60), moving=st.integers(0, 13)
 )
 def test_no_two_springs_of_a_block_pull_at_one_body(ends: list[tuple[int, int]], moving: int) -> None:
     pairs = np.array([(a, b) for a, b in ends if a != b], np.int64).reshape(-1, 2)

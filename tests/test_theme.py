@@ -21,13 +21,7 @@ from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.canvas import Finish, Look
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
 from physicslab.view.controls.tools import TOOLS
-from physicslab.view.overlay.arrows import (
-    CONTACT_NORMAL,
-    FORCE,
-    FRICTION_IMPULSE,
-    NORMAL_IMPULSE,
-    VELOCITY,
-)
+from physicslab.view.overlay.arrows import CONTACT_NORMAL, FORCE, FRICTION_IMPULSE, NORMAL_IMPULSE, VELOCITY
 from physicslab.view.picture.backdrop import draw_backdrop
 from physicslab.view.workbench.menus import ICON_BODIES, ICON_COLOURS
 from physicslab.view.workbench.world_panel import _colour

@@ -47,11 +47,7 @@ def test_systems_of_a_frame_import_nothing_above_systems(graph: grimp.ImportGrap
 
 @pytest.mark.parametrize(
     ("system", "stages"),
-    [
-        (InputSystem, {Stage.INPUT}),
-        (RenderSystem, {Stage.RENDER}),
-        (HudSystem, {Stage.HUD}),
-    ],
+    [(InputSystem, {Stage.INPUT}), (RenderSystem, {Stage.RENDER}), (HudSystem, {Stage.HUD})],
 )
 def test_a_system_of_a_frame_runs_at_its_own_stage_alone(system: type[System], stages: set[Stage]) -> None:
     assert system.marked().keys() == stages

@@ -201,22 +201,14 @@ def make_run(task: str) -> dict[str, Any]:
         recorder = RunRecorder(world)
         with Tiers(is_small(world)) as tiers:
             run = MeasuredRun(
-                world,
-                name,
-                tiers,
-                arguments.at_most,
-                recorder.write,
-                arguments.every,
+                world, name, tiers, arguments.at_most, recorder.write, arguments.every,
                 always=arguments.progress,
-            )
+            )  # fmt: skip
             run.go(arguments.seconds, None)
     except (Diverged, NotShown, CommandError, SceneError, InvalidValue) as error:
         return {"failure": str(error)}
     notes, many = _notes(world, run), arguments.is_one_of_many
-    return {
-        "document": run_document(world, recorder, notes, is_one_of_many=many),
-        "stopped": run.stopped,
-    }
+    return {"document": run_document(world, recorder, notes, is_one_of_many=many), "stopped": run.stopped}
 
 
 def _check_size(world: World, runs: int, arguments: Namespace) -> None:

@@ -70,17 +70,9 @@ class MeasuredRun:
     """
 
     def __init__(
-        self,
-        world: World,
-        name: str,
-        tiers: Tiers,
-        at_most: float | None = None,
-        keep: Keep | None = None,
-        every: float = 0.0,
-        impact_table: ImpactTableWriter | None = None,
-        *,
-        always: bool = False,
-    ) -> None:
+        self, world: World, name: str, tiers: Tiers, at_most: float | None = None, keep: Keep | None = None,
+        every: float = 0.0, impact_table: ImpactTableWriter | None = None, *, always: bool = False,
+    ) -> None:  # fmt: skip
         self.record, self.stopped = RunRecord(name, Audit(world)), ""
         self._world, self._tiers, self._at_most = world, tiers, at_most
         self._keeper, self._every, self._kept_at = keep, every, -math.inf

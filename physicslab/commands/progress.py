@@ -29,14 +29,9 @@ class Progress:
     """
 
     def __init__(
-        self,
-        label: str,
-        stream: TextIO | None,
-        clock: Callable[[], float] = time.monotonic,
-        *,
-        always: bool = False,
-        foresees: bool = False,
-    ) -> None:
+        self, label: str, stream: TextIO | None, clock: Callable[[], float] = time.monotonic, *,
+        always: bool = False, foresees: bool = False,
+    ) -> None:  # fmt: skip
         self._label, self._stream, self._clock = label, stream, clock
         seen = stream is not None and (always or stream.isatty())
         self._next = clock() + _DELAY_S if seen else float("inf")

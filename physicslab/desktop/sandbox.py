@@ -70,13 +70,9 @@ class Sandbox:
     """
 
     def __init__(
-        self,
-        world: World,
-        window: Window,
-        clock: Callable[[], float] = time.perf_counter,
-        autosave: Autosave | None = None,
-        shown: Callable[[World], None] | None = None,
-    ) -> None:
+        self, world: World, window: Window, clock: Callable[[], float] = time.perf_counter,
+        autosave: Autosave | None = None, shown: Callable[[World], None] | None = None,
+    ) -> None:  # fmt: skip
         self.window = window
         self._shown = shown
         self._clock = clock

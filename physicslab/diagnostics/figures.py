@@ -17,15 +17,7 @@ from typing import NamedTuple
 
 from physicslab.diagnostics.samples import COLLISIONS, Record
 from physicslab.ecs.conditions import Comparison, comparison, difference
-from physicslab.ecs.quantity_text import (
-    Expression,
-    InvalidText,
-    Quantity,
-    Scope,
-    Undefined,
-    dotted,
-    in_words,
-)
+from physicslab.ecs.quantity_text import Expression, InvalidText, Quantity, Scope, Undefined, dotted, in_words
 
 AROUND, _FEW = 6, 4
 """Samples that an interpolation goes through, and where no six of them lie on one curve."""

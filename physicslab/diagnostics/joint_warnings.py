@@ -14,10 +14,7 @@ from physicslab.ecs.sentences import sentence
 from physicslab.kernels.joints.blocks import ACTIVE, GIVES, ROW, STATE
 from physicslab.kernels.joints.measured import AX, BX, BY, TURN_A
 from physicslab.state.joint_closing import closing_places
-from physicslab.state.joint_figures import (
-    figures_of,
-    measured_terms,
-)
+from physicslab.state.joint_figures import figures_of, measured_terms
 from physicslab.state.joint_rows import Measure, Role
 from physicslab.state.joints import Joint
 from physicslab.stepping.plan import WITHOUT_END

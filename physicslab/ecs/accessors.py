@@ -15,67 +15,42 @@ ABSENT: Any = object()
 """Marks a value that was not given."""
 
 
-class Vector:
+class _Described[Read, Given]:
+    """The type of a field for type checkers: what reading it yields, and what it takes."""
+
+    def __get__(self, handle: object, owner: type | None = None) -> Read:
+        """Return the value in the handle's row."""
+        raise NotImplementedError  # the decorator puts a property in this place
+
+    def __set__(self, handle: object, value: Given) -> None:
+        """Store a value in the handle's row."""
+        raise NotImplementedError
+
+
+class Vector(_Described[Vector2, Vector2 | Sequence[float | str] | NDArray[Any] | str]):
     """The type of a vector field: reads as :class:`Vector2`, takes any pair of numbers."""
 
-    def __get__(self, handle: object, owner: type | None = None) -> Vector2:
-        """Return the vector stored in the handle's row."""
-        raise NotImplementedError  # the decorator puts a property in this place
 
-    def __set__(self, handle: object, value: Vector2 | Sequence[float | str] | NDArray[Any] | str) -> None:
-        """Store a pair of numbers in the handle's row."""
-        raise NotImplementedError
-
-
-class Number:
+class Number(_Described[float, float | str]):
     """The type of a number: reads as ``float``, takes a text with a unit as well."""
 
-    def __get__(self, handle: object, owner: type | None = None) -> float:
-        """Return the number in the handle's row."""
-        raise NotImplementedError  # the decorator puts a property in this place
 
-    def __set__(self, handle: object, value: float | str) -> None:
-        """Store a number in the handle's row."""
-        raise NotImplementedError
-
-
-class Entity:
+class Entity(_Described[int | None, int | str | None]):
     """The type of a field that refers to an entity: reads as its number, takes its id as well.
 
     It is an id until a world spawns the component, which then must have an entity of that id.
     """
 
-    def __get__(self, handle: object, owner: type | None = None) -> int | None:
-        """Return the number of the entity, or ``None``."""
-        raise NotImplementedError  # the decorator puts a property in this place
 
-    def __set__(self, handle: object, value: int | str | None) -> None:
-        """Store the number of an entity in the handle's row."""
-        raise NotImplementedError
+class Derived(_Described[float, float | str | None]):
+    """The type of a number that the world computes where it is ``None``: reads as ``float``, takes both.
 
-
-class Derived:
-    """The type of a number that the world computes where it is ``None``: reads as ``float``, takes both."""
-
-    def __get__(self, handle: object, owner: type | None = None) -> float:
-        """Return the number in the handle's row; 0 while it is not given and no world has computed it."""
-        raise NotImplementedError  # the decorator puts a property in this place
-
-    def __set__(self, handle: object, value: float | str | None) -> None:
-        """Give the number explicitly, or leave it to the world with ``None``."""
-        raise NotImplementedError
+    It reads as 0 while it is not given and no world has computed it.
+    """
 
 
-class Points:
+class Points(_Described[tuple[Vector2, ...], Sequence[Vector2 | Sequence[float]] | NDArray[Any]]):
     """The type of a list of points: reads as a tuple of :class:`Vector2`, takes any pairs of numbers."""
-
-    def __get__(self, handle: object, owner: type | None = None) -> tuple[Vector2, ...]:
-        """Return the points of the handle's row."""
-        raise NotImplementedError  # the decorator puts a property in this place
-
-    def __set__(self, handle: object, value: Sequence[Vector2 | Sequence[float]] | NDArray[Any]) -> None:
-        """Store points in the handle's row."""
-        raise NotImplementedError
 
 
 def maker(spec: Field) -> Maker:

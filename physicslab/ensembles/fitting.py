@@ -147,13 +147,9 @@ class _Model:
     """Runs of a scene beside data, by values of fields in units of their own size."""
 
     def __init__(
-        self,
-        world: World,
-        start: Mapping[str, float | str],
-        data: dict[str, Numbers],
-        until: str | None,
+        self, world: World, start: Mapping[str, float | str], data: dict[str, Numbers], until: str | None,
         seconds: float | None,
-    ) -> None:
+    ) -> None:  # fmt: skip
         self._scene, names = write_scene(world), entity_names(world)
         if not isinstance(start, Mapping) or not start:
             raise SceneError(

@@ -56,13 +56,9 @@ class Rollout:
     """
 
     def __init__(
-        self,
-        world: World,
-        places: Mapping[str, Place],
-        read: Sequence[tuple[int, str]],
-        chooses_the_same: Callable[[], bool],
-        of_impacts: bool,
-    ) -> None:
+        self, world: World, places: Mapping[str, Place], read: Sequence[tuple[int, str]],
+        chooses_the_same: Callable[[], bool], of_impacts: bool,
+    ) -> None:  # fmt: skip
         self._world, self._places, self._read, self._of_impacts = world, places, read, of_impacts
         self._chooses_the_same = chooses_the_same
         self._fields = {(place.kind.__name__, place.spec.name) for place in places.values()}
@@ -126,14 +122,9 @@ class Rollout:
         return allowed
 
     def _run_each(
-        self,
-        stepper: Repeatable,
-        stretches: Sequence[Stretch],
-        given: list[list[float]],
-        ends: NDArray[np.float64],
-        impacts: NDArray[Any],
-        made: NDArray[np.bool_],
-    ) -> None:
+        self, stepper: Repeatable, stretches: Sequence[Stretch], given: list[list[float]],
+        ends: NDArray[np.float64], impacts: NDArray[Any], made: NDArray[np.bool_],
+    ) -> None:  # fmt: skip
         """Make the runs of rows that are allowed, and note which could not be made."""
         world, run = self._world, stepper.repeatable(self._world, stretches)
         motion = motion_of(world)

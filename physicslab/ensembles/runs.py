@@ -31,22 +31,13 @@ _TAKEN = ("wall_s", "failure", "replica")
 
 
 def ensemble(
-    scene: str | os.PathLike[str] | Mapping[str, Any] | World,
-    space: Mapping[str, Given],
-    *,
-    measure: Measure | Mapping[str, Measure],
-    seconds: float | None = None,
-    steps: int | None = None,
-    until: str | None = None,
-    samples: int | None = None,
-    seed: int = 0,
-    replicas: int = 1,
-    jitter: float | str | Mapping[str, float | str] = 0.0,
-    executor: str | Executor = "processes",
-    workers: int | None = None,
-    out: str | os.PathLike[str] | None = None,
+    scene: str | os.PathLike[str] | Mapping[str, Any] | World, space: Mapping[str, Given], *,
+    measure: Measure | Mapping[str, Measure], seconds: float | None = None, steps: int | None = None,
+    until: str | None = None, samples: int | None = None, seed: int = 0, replicas: int = 1,
+    jitter: float | str | Mapping[str, float | str] = 0.0, executor: str | Executor = "processes",
+    workers: int | None = None, out: str | os.PathLike[str] | None = None,
     progress: Callable[[float], object] | bool = False,
-) -> EnsembleResult:
+) -> EnsembleResult:  # fmt: skip
     """Run a scene once for each row of a space, and measure each run.
 
     Parameters

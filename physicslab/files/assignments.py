@@ -115,13 +115,9 @@ def _value(spec: Field, text: str, names: Mapping[str, int], where: str) -> Any:
 
 
 def _replace(
-    world: World,
-    name: str,
-    entity: int,
-    kind: type[Component] | Section,
-    fields: Mapping[str, tuple[str, Any]],
-    option: str = "--set",
-) -> None:
+    world: World, name: str, entity: int, kind: type[Component] | Section,
+    fields: Mapping[str, tuple[str, Any]], option: str = "--set",
+) -> None:  # fmt: skip
     """Put a component with these values in the place of the one that the entity has, or such laws."""
     values = {field: value for field, (_, value) in fields.items()}
     try:

@@ -10,13 +10,7 @@ import esper
 from physicslab.contacts.islands import restore_rests
 from physicslab.contacts.memory import restore_contacts
 from physicslab.ecs.component import Component, InvalidValue
-from physicslab.ecs.config import (
-    MAX_TIME,
-    MIN_TIME,
-    PhysicsConfig,
-    SimulationConfig,
-    field_names,
-)
+from physicslab.ecs.config import MAX_TIME, MIN_TIME, PhysicsConfig, SimulationConfig, field_names
 from physicslab.ecs.fields import COORDINATE_LIMIT, Field
 from physicslab.files import checks
 from physicslab.files.entities import check_contacts, check_entities, check_ids, check_joints, check_rests

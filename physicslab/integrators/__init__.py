@@ -23,7 +23,7 @@ INTEGRATORS: dict[str, Integrator] = {
         EXACT,
         IMPLICIT_MIDPOINT,
     )
-}
+}  # fmt: skip
 """Every method that can be chosen by name."""
 
 SPLIT_METHODS: dict[str, Integrator] = {**INTEGRATORS, SPRING_SPLITTING.name: SPRING_SPLITTING}

@@ -107,15 +107,9 @@ class OdeSystem:
     """
 
     def __init__(
-        self,
-        state: State,
-        forces: Sequence[ForceSystem],
-        part: NDArray[np.bool_] | None = None,
-        *,
-        every_row: bool = False,
-        also: tuple[int, ...] = (),
-        kicked: bool = False,
-    ) -> None:
+        self, state: State, forces: Sequence[ForceSystem], part: NDArray[np.bool_] | None = None, *,
+        every_row: bool = False, also: tuple[int, ...] = (), kicked: bool = False,
+    ) -> None:  # fmt: skip
         self.forces, self._also, self._kicked = tuple(forces), also, kicked
         self._every_row = every_row
         self.interpreted = any(not type(system).packs() for system in self.forces)

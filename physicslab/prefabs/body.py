@@ -157,13 +157,9 @@ def circle(world: Contents, position: Pair, *, radius: float = 0.25, **options: 
 
 
 def polygon(
-    world: Contents,
-    position: Pair,
-    vertices: Sequence[Pair],
-    *,
-    radius: float = 0.0,
+    world: Contents, position: Pair, vertices: Sequence[Pair], *, radius: float = 0.0,
     **options: Unpack[BodyOptions],
-) -> int:
+) -> int:  # fmt: skip
     """Spawn a convex polygon of 3 to 8 vertices [m], rounded by a radius [m]; return its entity.
 
     Vertices are counter-clockwise, from anywhere: its centre of mass is put at ``position`` [m].

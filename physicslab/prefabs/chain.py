@@ -7,17 +7,9 @@ from physicslab.state.contents import Contents
 
 
 def chain(
-    world: Contents,
-    count: int,
-    start: Pair,
-    end: Pair,
-    *,
-    hold_end: bool = False,
-    radius: float = 0.1,
-    mass: float = 0.1,
-    stiffness: float = 500.0,
-    damping: float = 0.5,
-) -> list[int]:
+    world: Contents, count: int, start: Pair, end: Pair, *, hold_end: bool = False, radius: float = 0.1,
+    mass: float = 0.1, stiffness: float = 500.0, damping: float = 0.5,
+) -> list[int]:  # fmt: skip
     """Spawn ``count`` balls on a line, joined by springs, the first to a fixed point; return them in order.
 
     Parameters
@@ -53,19 +45,10 @@ def chain(
 
 
 def pendulum(
-    world: Contents,
-    anchor: Pair,
-    *,
-    length: float = 2.0,
-    angle: float = 0.5,
-    radius: float = 0.2,
-    stiffness: float | None = None,
-    damping: float = 0.0,
-    mass: float = 1.0,
-    restitution: float = 0.0,
-    friction: float = 0.5,
-    name: str | None = None,
-) -> int:
+    world: Contents, anchor: Pair, *, length: float = 2.0, angle: float = 0.5, radius: float = 0.2,
+    stiffness: float | None = None, damping: float = 0.0, mass: float = 1.0, restitution: float = 0.0,
+    friction: float = 0.5, name: str | None = None,
+) -> int:  # fmt: skip
     """Spawn a disc that hangs from a fixed point on a rod, or on a spring; return its entity.
 
     The end is at the bob's centre, so that it swings without being turned. A rod and a spring push, too.

@@ -8,14 +8,9 @@ from physicslab.state.contents import Contents
 
 
 def container(
-    world: Contents,
-    position: Pair = (0.0, 0.0),
-    *,
-    width: float,
-    height: float,
-    thickness: float = 1.0,
+    world: Contents, position: Pair = (0.0, 0.0), *, width: float, height: float, thickness: float = 1.0,
     **options: Unpack[BodyOptions],
-) -> list[int]:
+) -> list[int]:  # fmt: skip
     """Spawn a static floor and two walls, open at the top; return their entities: floor, left, right.
 
     Parameters

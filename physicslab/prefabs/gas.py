@@ -10,16 +10,9 @@ from physicslab.state.contents import Contents
 
 
 def gas(
-    world: Contents,
-    count: int,
-    region: tuple[float, float, float, float],
-    *,
-    radius: float = 0.1,
-    mass: float = 1.0,
-    slowest: float = 1.0,
-    fastest: float = 3.0,
-    seed: int = 1,
-) -> list[int]:
+    world: Contents, count: int, region: tuple[float, float, float, float], *, radius: float = 0.1,
+    mass: float = 1.0, slowest: float = 1.0, fastest: float = 3.0, seed: int = 1,
+) -> list[int]:  # fmt: skip
     """Spawn elastic, frictionless discs that move in all directions; return their entities.
 
     No two overlap: each is at a random place in a cell of its own.

@@ -10,17 +10,9 @@ from physicslab.state.contents import Contents
 
 
 def pile(
-    world: Contents,
-    count: int,
-    foot: Pair = (0.0, 0.0),
-    *,
-    columns: int = 40,
-    radius: float = 0.1,
-    gap: float = 0.05,
-    density: float = 1.0,
-    seed: int = 1,
-    **options: Unpack[BodyOptions],
-) -> list[int]:
+    world: Contents, count: int, foot: Pair = (0.0, 0.0), *, columns: int = 40, radius: float = 0.1,
+    gap: float = 0.05, density: float = 1.0, seed: int = 1, **options: Unpack[BodyOptions],
+) -> list[int]:  # fmt: skip
     """Spawn ``count`` discs in spaced rows that will fall into a pile; return their entities, row by row.
 
     Parameters
@@ -52,14 +44,9 @@ def pile(
 
 
 def pyramid(
-    world: Contents,
-    base: int,
-    foot: Pair = (0.0, 0.0),
-    *,
-    size: float = 1.0,
-    gap: float = 0.1,
+    world: Contents, base: int, foot: Pair = (0.0, 0.0), *, size: float = 1.0, gap: float = 0.1,
     **options: Unpack[BodyOptions],
-) -> list[int]:
+) -> list[int]:  # fmt: skip
     """Spawn rows of ``base``, ``base - 1``, ..., 1 square boxes; return their entities, row by row.
 
     Parameters
@@ -86,15 +73,9 @@ def pyramid(
 
 
 def stack(
-    world: Contents,
-    count: int,
-    base: Pair = (0.0, 0.0),
-    *,
-    width: float = 1.0,
-    height: float = 1.0,
-    gap: float = 0.0,
-    **options: Unpack[BodyOptions],
-) -> list[int]:
+    world: Contents, count: int, base: Pair = (0.0, 0.0), *, width: float = 1.0, height: float = 1.0,
+    gap: float = 0.0, **options: Unpack[BodyOptions],
+) -> list[int]:  # fmt: skip
     """Spawn ``count`` boxes on top of each other; return their entities from the lowest up.
 
     Parameters

@@ -32,14 +32,9 @@ class Planet:
 
 
 def binary(
-    world: Contents,
-    masses: tuple[float, float] = (1.0, 1.0),
-    *,
-    separation: float = 2.0,
-    eccentricity: float = 0.0,
-    names: tuple[str | None, str | None] = (None, None),
-    trail: float = 5.0,
-) -> list[int]:
+    world: Contents, masses: tuple[float, float] = (1.0, 1.0), *, separation: float = 2.0,
+    eccentricity: float = 0.0, names: tuple[str | None, str | None] = (None, None), trail: float = 5.0,
+) -> list[int]:  # fmt: skip
     """Spawn two point masses on Kepler orbits about the origin, which they circle with no momentum in total.
 
     They start where they are farthest apart, on the x axis, and go round counter-clockwise.

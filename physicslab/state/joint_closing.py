@@ -23,13 +23,9 @@ _APART, _MOST_ROWS = 1e-9, 400
 
 
 def closing_places(
-    state: State,
-    least: float,
-    *,
-    limits: bool = False,
-    start: tuple[Numbers, Numbers] | None = None,
+    state: State, least: float, *, limits: bool = False, start: tuple[Numbers, Numbers] | None = None,
     give: Numbers | None = None,
-) -> tuple[Numbers, Numbers] | None:
+) -> tuple[Numbers, Numbers] | None:  # fmt: skip
     """Return places (rows, 2) [m] and angles (rows,) [rad] at which joints hold; ``None`` if none is found.
 
     Heavy bodies are moved least. Where light ones between them leave no way, all move as if they were equal.

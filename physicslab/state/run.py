@@ -72,13 +72,9 @@ class Run:
     """
 
     def __init__(
-        self,
-        times: Column,
-        motion: NDArray[np.float64],
-        bodies: tuple[str, ...],
-        found: float | None,
+        self, times: Column, motion: NDArray[np.float64], bodies: tuple[str, ...], found: float | None,
         replay: Replay,
-    ) -> None:
+    ) -> None:  # fmt: skip
         self.times, self.motion, self.bodies, self.found = times, motion, bodies, found
         self._replay = replay
 

@@ -105,23 +105,27 @@ class Flow(Stepper):
         left = most  # evaluations that the step may have that is being made
         try:
             while made < parts * steps * whole:
-                span = min(span, parts * steps * whole - made)
-                left = most if made % whole == 0 else left
-                divides = adaptive and span > 1 and left > _SPAN
+                span, within = min(span, parts * steps * whole - made), made % whole
+                left = left if within else most
+                # Whole steps, or a part of one: what a step may have is counted from its start.
+                piece = min(span, whole - within) if within or span < whole else span - span % whole
+                divides = adaptive and piece > 1 and left > _SPAN
                 self._ode.most = _SPAN if divides else left if adaptive else None
                 try:
-                    self._flow(state, short, span, max(1, span // whole), divides=divides, unedited=unedited)
+                    self._flow(
+                        state, short, piece, max(1, piece // whole), divides=divides, unedited=unedited
+                    )
                 except Overloaded as found:
                     found.steps += made // (parts * whole)
                     raise
                 except Exhausted:
-                    span, left = span // 2, left - _SPAN
+                    span, left = piece // 2, left - _SPAN
                     continue
                 except NotSmooth:
-                    if made and parts == 1 and made % whole == 0:
+                    if made and parts == 1 and not within:
                         return Advance(made // whole)  # the next call begins where it fails
                     raise
-                made, state.time, unedited = made + span, time_after(state.time, short, span), True
+                made, state.time, unedited = made + piece, time_after(state.time, short, piece), True
                 step, rest = divmod(made, parts * whole)
                 if state.joints.breakable and not rest and step < steps and is_overloaded(state):
                     raise Overloaded(step)

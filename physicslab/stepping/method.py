@@ -160,13 +160,9 @@ def method_beside_contacts(state: State, schedule: Schedule, obstacle: str) -> S
     moved_by = sentence("charges_alone") if turned and not python else moved_by
     reason = sentence("beside_contacts", obstacle=obstacle, bodies=moved_by, method=method.name, how=how)
     return replace(
-        kicks,
-        reason=reason,
-        stages=LEAPFROG_WITH_SPLIT_FORCES,
-        split_forces=method,
-        split_steps=needed,
+        kicks, reason=reason, stages=LEAPFROG_WITH_SPLIT_FORCES, split_forces=method, split_steps=needed,
         beyond=beyond,
-    )
+    )  # fmt: skip
 
 
 def tolerance_for(state: State, forces: Sequence[ForceSystem]) -> float:

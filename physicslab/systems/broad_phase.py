@@ -13,14 +13,7 @@ from physicslab.ecs.sentences import sentence
 from physicslab.kernels import direct_entry
 from physicslab.kernels.broad import chains, grid, leaving, near_pairs
 from physicslab.kernels.broad.fat_boxes import HIT_SHARE, fat_boxes
-from physicslab.kernels.broad.leaving import (
-    AHEAD,
-    BODIES,
-    CELL,
-    SMALLS,
-    FatBoxes,
-    blank_boxes,
-)
+from physicslab.kernels.broad.leaving import AHEAD, BODIES, CELL, SMALLS, FatBoxes, blank_boxes
 from physicslab.kernels.geometry.shapes import OWN
 from physicslab.kernels.solver import soft
 from physicslab.kernels.wide import slots

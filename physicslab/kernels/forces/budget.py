@@ -30,17 +30,9 @@ ALL_MOVED = 15
 
 @inlined
 def keep_pull(
-    force: Any,
-    kept: int,
-    indices: Any,
-    s: int,
-    x: float,
-    y: float,
-    ax: float,
-    ay: float,
-    bx: float,
+    force: Any, kept: int, indices: Any, s: int, x: float, y: float, ax: float, ay: float, bx: float,
     by: float,
-) -> None:
+) -> None:  # fmt: skip
     """Keep the pull (x, y) of the damper of spring number s by itself; it acts at the arms a and b."""
     a, turn_a, b, turn_b = indices[1 + 4 * s], indices[2 + 4 * s], indices[3 + 4 * s], indices[4 + 4 * s]
     force[kept + a] += x

@@ -110,15 +110,9 @@ def pull_of(
 
 @inlined_loosely
 def depth_of(
-    x: Numbers,
-    y: Numbers,
-    mass: Numbers,
-    at_x: float,
-    at_y: float,
-    added: float,
-    near2: float,
+    x: Numbers, y: Numbers, mass: Numbers, at_x: float, at_y: float, added: float, near2: float,
     inverse: float,
-) -> float:
+) -> float:  # fmt: skip
     """Return the sum of m times the depth [kg/m] of bodies as in :func:`pull_of`, for a unit mass.
 
     Plummer: 1/d. Clamp: 1/r beyond s, and within the straight line (2 s - r) / s^2 that continues it.

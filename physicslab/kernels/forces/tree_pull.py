@@ -154,15 +154,9 @@ def depth_by_tree(x: Numbers, y: Numbers, mass: Numbers, softening: float, plumm
             depth = _depth_of_nodes(far, wholes, x[i], y[i], added)
             for first, last in ((0, own), (own + 1, nears)):  # all but the body itself
                 depth += depth_of(
-                    near[0, first:last],
-                    near[1, first:last],
-                    near[2, first:last],
-                    x[i],
-                    y[i],
-                    added,
-                    near2,
+                    near[0, first:last], near[1, first:last], near[2, first:last], x[i], y[i], added, near2,
                     inverse,
-                )
+                )  # fmt: skip
             own += 1
             total += 0.5 * mass[i] * depth
     return total

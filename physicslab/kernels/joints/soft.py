@@ -15,13 +15,7 @@ from physicslab.kernels.accounts import ENERGY, HAND, JOINTS, MOTORS, book
 from physicslab.kernels.arguments import Acting, Inverse, Motion
 from physicslab.kernels.constraint.stirred import SETTLED, Stirred, is_stirred, stir
 from physicslab.kernels.joints import blocks as B
-from physicslab.kernels.joints.blocks import (
-    Joints,
-    can_move,
-    factorise,
-    substitute_back,
-    substitute_forward,
-)
+from physicslab.kernels.joints.blocks import Joints, can_move, factorise, substitute_back, substitute_forward
 from physicslab.kernels.joints.terms import HOLD, LIMIT, MOTOR, TermEnd, measure_turned
 from physicslab.kernels.types import unsigned
 

@@ -19,15 +19,7 @@ from physicslab.kernels import Numbers, Rows, Vectors, always_inlined, inlined
 from physicslab.kernels.accounts import DAMPING, book
 from physicslab.kernels.arguments import Motion, Springs
 from physicslab.kernels.directions import face
-from physicslab.kernels.float64x8 import (
-    choose,
-    everywhere,
-    mask_bits,
-    put,
-    root,
-    sum_of,
-    take,
-)
+from physicslab.kernels.float64x8 import choose, everywhere, mask_bits, put, root, sum_of, take
 from physicslab.kernels.ode import spring_flow as S
 from physicslab.kernels.ode.drag_flow import fall_in_drag
 from physicslab.kernels.ode.held_drag import Slowed, slow, slow_alone, slowed_in

@@ -294,22 +294,9 @@ def dop853(
     q_scale, v_scale, steepest = largest(q, n), largest(v, n), steepness[0]
     steepness[0] = 0.0
     make_stages(
-        q,
-        v,
-        stage_q,
-        stage_v,
-        acceleration,
-        rates,
-        pushes,
-        inverse_mass,
-        damping,
-        calls,
-        clock,
-        booked,
-        0.0,
-        0,
-        1,
-    )
+        q, v, stage_q, stage_v, acceleration, rates, pushes, inverse_mass, damping, calls, clock, booked, 0.0,
+        0, 1,
+    )  # fmt: skip
     if not all_finite(acceleration, stage_v, n):
         return NOT_FINITE
     evaluations, done, done_low = 1, 0.0, 0.0

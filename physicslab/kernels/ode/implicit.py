@@ -1,6 +1,7 @@
 """The implicit midpoint rule, more implicit where something resists motion, by Newton's method."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -21,6 +22,41 @@ _FAR = 1e-6
 _SMALL = 1e-3
 """The length scale [m] where all coordinates are zero."""
 _EPSILON = 2.220446049250313e-16
+
+
+class Unknowns(NamedTuple):
+    """A step to be solved: the state and the laws, and the room for Newton's method.
+
+    Attributes
+    ----------
+    q, v, stage_q : float64 arrays (size,)
+        The state at the beginning, as :func:`implicit_midpoint` takes it, and where forces are evaluated.
+    inverse_mass, damping, calls, resistances, order, band
+        As :func:`implicit_midpoint` takes them; n is the length of ``inverse_mass``.
+    x, shifted : float64 arrays (m,)
+        The unknowns: the mean velocity u; where something resists motion, then y, the end velocity less u.
+        And room for residuals.
+    stack, acceleration : float64 arrays (3 size,), (size,)
+        y, u and v one after the other; and what forces make of them.
+    matrix, pivots : float64 array (m, 3 band + 1), int64 array (m,)
+        The factors of the slope.
+    """
+
+    q: Numbers
+    v: Numbers
+    stage_q: Numbers
+    inverse_mass: Numbers
+    damping: Numbers
+    calls: Calls
+    resistances: Calls
+    order: Rows
+    band: int
+    x: Numbers
+    shifted: Numbers
+    stack: Numbers
+    acceleration: Numbers
+    matrix: Vectors
+    pivots: Rows
 
 
 @inlined
@@ -64,23 +100,18 @@ def _solve(matrix: Vectors, pivots: Rows, band: int, right: Numbers) -> None:
 
 
 @inlined
-def _miss(
-    q: Numbers, v: Numbers, x: Numbers, stage_q: Numbers, stack: Numbers, acceleration: Numbers,
-    inverse_mass: Numbers, damping: Numbers, calls: Calls, resistances: Calls, h: float, miss: Numbers,
-    given: Numbers,
-) -> None:  # fmt: skip
-    """Compute the residual of the equations of the step at ``x``.
+def _miss(of: Unknowns, x: Numbers, h: float, miss: Numbers, given: Numbers) -> None:
+    """Compute the residual of the equations of the step at ``x`` into ``miss`` (m,).
 
-    It holds the mean velocity u; where something resists motion, then y, the end velocity less u.
-    ``stack`` holds y, u and v one after the other, each as long as q. ``given`` takes what causes give in a
-    second, or a part of that.
+    ``given`` takes what causes give in a second, or a part of that.
     """
-    n, size = len(inverse_mass), len(q)
+    q, v, stack, acceleration = of.q, of.v, of.stack, of.acceleration
+    n, size = len(of.inverse_mass), len(q)
     mean = stack[size : 2 * size]
     for i in range(n):
         mean[i] = x[i]
-        stage_q[i] = q[i] + 0.5 * h * x[i]
-    accelerate_over(stage_q, mean, h, acceleration, inverse_mass, damping, calls)
+        of.stage_q[i] = q[i] + 0.5 * h * x[i]
+    accelerate_over(of.stage_q, mean, h, acceleration, of.inverse_mass, of.damping, of.calls)
     for i in range(len(given)):
         given[i] = acceleration[size - len(given) + i]
     if len(x) == n:
@@ -90,112 +121,86 @@ def _miss(
     for i in range(n):
         miss[n + i] = h * acceleration[i] - (x[i] - v[i]) - x[n + i]
         stack[i], stack[2 * size + i] = x[n + i], v[i]
-    accelerate_over(stage_q, stack, h, acceleration, inverse_mass, damping, resistances)
+    accelerate_over(of.stage_q, stack, h, acceleration, of.inverse_mass, of.damping, of.resistances)
     for i in range(n):
         miss[i] = x[n + i] - h * acceleration[i] - (x[i] - v[i])
 
 
 @allocating
-def _differentiate(
-    q: Numbers, v: Numbers, x: Numbers, stage_q: Numbers, stack: Numbers, acceleration: Numbers,
-    inverse_mass: Numbers, damping: Numbers, calls: Calls, resistances: Calls, h: float, miss: Numbers,
-    shifted: Numbers, order: Rows, band: int, matrix: Vectors,
-) -> int:  # fmt: skip
+def _differentiate(of: Unknowns, h: float, miss: Numbers) -> int:
     """Fill in minus the slope of :func:`_miss` by differences, and return the evaluations.
 
     Columns further apart than the band is wide share no row, so they are shifted together (Curtis, Powell &
     Reid, J. Inst. Maths Applics 13 (1974) 117).
     """
+    x, order, band, shifted = of.x, of.order, of.band, of.shifted
     n = len(order)
     # Places move by sqrt(epsilon) of themselves.
-    shift = 1.5e-8 * max(largest(x, n) + largest(q, len(inverse_mass)) / h, _SMALL / h)
+    shift = 1.5e-8 * max(largest(x, n) + largest(of.q, len(of.inverse_mass)) / h, _SMALL / h)
     stride = min(2 * band + 1, n)
     # A rotation curves so much within the shift that strong dampers need central differences.
-    both = n > len(inverse_mass)
+    both = n > len(of.inverse_mass)
     moved, below, none = x.copy(), miss.copy(), np.empty(0)
     for first in range(stride):
         for j in range(first, n, stride):
             moved[order[j]] = x[order[j]] + shift
-        _miss(
-            q, v, moved, stage_q, stack, acceleration, inverse_mass, damping, calls, resistances, h, shifted,
-            none,
-        )  # fmt: skip
+        _miss(of, moved, h, shifted, none)
         if both:
             for j in range(first, n, stride):
                 moved[order[j]] = x[order[j]] - shift
-            _miss(
-                q, v, moved, stage_q, stack, acceleration, inverse_mass, damping, calls, resistances, h,
-                below, none,
-            )  # fmt: skip
+            _miss(of, moved, h, below, none)
         for j in range(first, n, stride):
             moved[order[j]] = x[order[j]]
             for i in range(max(j - 2 * band, 0), max(j - band, 0)):
-                matrix[i, j - i + band] = 0.0
+                of.matrix[i, j - i + band] = 0.0
             for i in range(max(j - band, 0), min(j + band + 1, n)):
                 slope = (below[order[i]] - shifted[order[i]]) / (2.0 * shift if both else shift)
-                matrix[i, j - i + band] = slope
+                of.matrix[i, j - i + band] = slope
     return 2 * stride if both else stride
 
 
 @inlined
-def _newton(
-    q: Numbers, v: Numbers, x: Numbers, stage_q: Numbers, stack: Numbers, acceleration: Numbers,
-    inverse_mass: Numbers, damping: Numbers, calls: Calls, resistances: Calls, h: float, miss: Numbers,
-    shifted: Numbers, order: Rows, band: int, matrix: Vectors, pivots: Rows, known: bool, given: Numbers,
-) -> tuple[int, int]:  # fmt: skip
-    """Solve for ``x``, beginning with what is in it; return iterations (-1: no convergence) and evaluations.
+def _newton(of: Unknowns, h: float, miss: Numbers, known: bool, given: Numbers) -> tuple[int, int]:
+    """Solve for ``of.x``, beginning with what is in it; return iterations (-1: none fits) and evaluations.
 
-    ``known`` means that ``matrix`` and ``pivots`` hold factors that may still be good enough.
+    ``known`` means that the factors at hand may still be good enough.
     """
-    n = len(order)
-    residual = shifted
+    x, n, residual = of.x, len(of.order), of.shifted
     before, evaluations, far = math.inf, 0, False
     for iteration in range(1, _MAX_ITERATIONS + 1):
-        _miss(
-            q, v, x, stage_q, stack, acceleration, inverse_mass, damping, calls, resistances, h, miss, given
-        )
+        _miss(of, x, h, miss, given)
         evaluations += 1
         if (iteration == 1 and not known) or iteration > _SLOW or far:
-            evaluations += _differentiate(
-                q, v, x, stage_q, stack, acceleration, inverse_mass, damping, calls, resistances, h, miss,
-                shifted, order, band, matrix,
-            )  # fmt: skip
-            _factorise(matrix, pivots, band)
+            evaluations += _differentiate(of, h, miss)
+            _factorise(of.matrix, of.pivots, of.band)
         for i in range(n):
-            residual[i] = miss[order[i]]
-        _solve(matrix, pivots, band, residual)
+            residual[i] = miss[of.order[i]]
+        _solve(of.matrix, of.pivots, of.band, residual)
         change = largest(residual, n)
         for i in range(n):
-            x[order[i]] += residual[i]
+            x[of.order[i]] += residual[i]
         # Below this times epsilon, coordinates cannot resolve a difference.
-        size = largest(x, n) + largest(q, len(inverse_mass)) / h
+        size = largest(x, n) + largest(of.q, len(of.inverse_mass)) / h
         if change <= 4.0 * _EPSILON * size or (change >= 0.5 * before and change <= 1e-10 * size):
             return (iteration if all_finite(x, residual, n) else -1), evaluations
         if not math.isfinite(change):
             break
-        before, far = change, n > len(inverse_mass) and change > _FAR * size
+        before, far = change, n > len(of.inverse_mass) and change > _FAR * size
     return -1, evaluations
 
 
 @inlined
-def _search(
-    q: Numbers, v: Numbers, x: Numbers, stage_q: Numbers, stack: Numbers, acceleration: Numbers,
-    inverse_mass: Numbers, damping: Numbers, calls: Calls, resistances: Calls, h: float, miss: Numbers,
-    shifted: Numbers, order: Rows, band: int, matrix: Vectors, pivots: Rows, known: bool, given: Numbers,
-) -> tuple[int, int]:  # fmt: skip
-    """Solve for ``x`` as :func:`_newton` does, from where there is a solution nearby.
+def _search(of: Unknowns, h: float, miss: Numbers, known: bool, given: Numbers) -> tuple[int, int]:
+    """Solve for ``of.x`` as :func:`_newton` does, from where there is a solution nearby.
 
     Where a spring oscillates many times a step, v has another direction at the end of each and leads far
     away: the search begins where the bodies are. Where that fails, it begins with v, as on a fast rod.
     """
     evaluations = 0
     for guess in range(2):
-        for i in range(len(order)):
-            x[i] = guess * v[i] if i < len(inverse_mass) else 0.0
-        iterations, tried = _newton(
-            q, v, x, stage_q, stack, acceleration, inverse_mass, damping, calls, resistances, h, miss,
-            shifted, order, band, matrix, pivots, known and guess == 0, given,
-        )  # fmt: skip
+        for i in range(len(of.order)):
+            of.x[i] = guess * of.v[i] if i < len(of.inverse_mass) else 0.0
+        iterations, tried = _newton(of, h, miss, known and guess == 0, given)
         evaluations += tried
         if iterations > 0:
             return iterations, evaluations
@@ -232,19 +237,18 @@ def implicit_midpoint(
     """
     n, m, clock = len(inverse_mass), len(order), places[CLOCK]
     (begin, first), given = step_grid(q[clock], h), np.zeros(len(q) - clock - 1)
-    stage_q, x, miss, shifted = q.copy(), np.zeros(m), np.empty(m), np.empty(m)
-    acceleration, stack = np.empty(len(q)), np.zeros(3 * len(q))
-    matrix, pivots = np.zeros((m, 3 * band + 1)), np.zeros(m, np.int64)
+    stage_q, x, miss = q.copy(), np.zeros(m), np.empty(m)
+    of = Unknowns(
+        q, v, stage_q, inverse_mass, damping, calls, resistances, order, band, x, np.empty(m),
+        np.zeros(3 * len(q)), np.empty(len(q)), np.zeros((m, 3 * band + 1)), np.zeros(m, np.int64),
+    )  # fmt: skip
     evaluations, known = 0, False
     for step in range(steps):
         done, part = 0, _PARTS
         while done < _PARTS:
             span = h * part / _PARTS
             stage_q[clock] = begin + (first + step + (done + 0.5 * part) / _PARTS) * h
-            iterations, tried = _search(
-                q, v, x, stage_q, stack, acceleration, inverse_mass, damping, calls, resistances, span, miss,
-                shifted, order, band, matrix, pivots, known, given,
-            )  # fmt: skip
+            iterations, tried = _search(of, span, miss, known, given)
             evaluations += tried
             if iterations < 0 and part == 1:
                 return -1

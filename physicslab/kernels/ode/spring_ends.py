@@ -3,14 +3,7 @@
 from typing import NamedTuple
 
 from physicslab.kernels import Numbers, Rows, Vectors, always_inlined, inlined_by_numba
-from physicslab.kernels.float64x8 import (
-    Wide,
-    everywhere,
-    put_numbers,
-    take,
-    take_numbers,
-    take_vectors,
-)
+from physicslab.kernels.float64x8 import Wide, everywhere, put_numbers, take, take_numbers, take_vectors
 from physicslab.kernels.ode.spring_flow import Links, Places, between, pull_middles
 from physicslab.kernels.wide_layout import WIDE
 

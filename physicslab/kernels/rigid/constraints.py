@@ -6,10 +6,10 @@ from physicslab.kernels import Numbers, always_inlined, inlined
 from physicslab.kernels.forces.force_calls import accelerate
 from physicslab.kernels.joints.layout import ROWS
 from physicslab.kernels.rigid import features as F
-from physicslab.kernels.rigid.budget import book_contacts, book_speeds
+from physicslab.kernels.rigid.budget import book_speeds
 from physicslab.kernels.rigid.equations import CHANGE, FREE, UNKNOWN, Equations
 from physicslab.kernels.rigid.features import RigidScene, rate_along
-from physicslab.kernels.rigid.joined import book_answer, lessen, measure_joints, pass_on
+from physicslab.kernels.rigid.joined import book_forces, lessen, measure_joints, pass_on
 from physicslab.kernels.rigid.joint_points import OWN, measure
 from physicslab.kernels.rigid.least_norm import REFINEMENTS, begin_equations, refine, solve_equations
 
@@ -70,7 +70,7 @@ def assemble(scene: RigidScene, equations: Equations, count: int) -> None:
             a[n, other_n], a[n, other_t], a[t, other_n], a[t, other_t] = nn, nt, tn, tt
             a[other_n, n], a[other_t, n], a[other_n, t], a[other_t, t] = nn, nt, tn, tt
     if scene.joints[ROWS] > 0:
-        lessen(scene, equations.points, equations.measures, count, a)
+        lessen(scene, equations, count)
 
 
 @inlined
@@ -89,7 +89,7 @@ def apply(scene: RigidScene, equations: Equations, count: int, target: Numbers, 
                 push = along * measures[i, n + k] + across * measures[i, t + k]
                 target[place] += scene.inverse_mass[place] * push
     if scene.joints[ROWS] > 0:
-        pass_on(scene, points, measures, equations.vectors[which], count, target)
+        pass_on(scene, equations, which, count, target)
 
 
 @inlined
@@ -153,10 +153,7 @@ def constrained_acceleration(
             if residual < 0.0:
                 break
             apply(scene, equations, count, acceleration, CHANGE)
-        book_contacts(scene, equations, count, q, v, acceleration)
-        if scene.joints[ROWS] > 0:
-            forces = equations.vectors[UNKNOWN]
-            book_answer(scene, equations.points, equations.measures, forces, count, q, v, acceleration)
+        book_forces(scene, equations, count, q, v, acceleration)
 
 
 @always_inlined

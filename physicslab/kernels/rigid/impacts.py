@@ -345,7 +345,7 @@ def resolve_simultaneous_impacts(
                 for i in range(len(v)):
                     v[i] = old[i]
                 return impacts, False, energetic, lowered, last, turn
-            book_impulses(scene, impact.points, impact.measures, impact.vectors[UNKNOWN], n, q, v, account)
+            book_impulses(scene, impact, n, q, v, account)
         impacts += _note_round(
             scene, impact, n, q, old, v, rest, rate, acceleration, law, entities, log, logged + impacts, time,
             account,

@@ -13,6 +13,8 @@ from physicslab.kernels.joints.envelope import factorise, solve
 from physicslab.kernels.joints.rows import book_rows, given_by_rows, measure_rows, push_by_rows
 from physicslab.kernels.joints.terms import HOLD, MOTOR
 from physicslab.kernels.rigid import features as F
+from physicslab.kernels.rigid.budget import book_contacts
+from physicslab.kernels.rigid.equations import UNKNOWN, Equations
 from physicslab.kernels.rigid.features import Points, RigidScene, SceneTuple, named_scene
 
 _IMMOVABLE = 1e-12
@@ -46,11 +48,12 @@ def _at_row(scene: RigidScene, points: Points, measures: Vectors, i: int, r: int
 
 
 @inlined
-def lessen(scene: RigidScene, points: Points, measures: Vectors, count: int, a: Vectors) -> None:
-    """Take from what unit forces cause at ``count`` points (2 count, 2 count) what joints hold back.
+def lessen(scene: RigidScene, equations: Equations, count: int) -> None:
+    """Take from what unit forces cause at ``count`` points, ``equations.a``, what joints hold back.
 
     A force that joints answer in full moves nothing, and is left as if by itself: nothing presses there.
     """
+    points, measures, a = equations.points, equations.measures, equations.a
     n, states = scene.joints[L.ROWS], L.first_state(scene.joints)
     for column in range(2 * count):
         for r in range(n):
@@ -86,31 +89,29 @@ def answer(scene: RigidScene, points: Points, measures: Vectors, forces: Numbers
 
 
 @inlined
-def pass_on(
-    scene: RigidScene, points: Points, measures: Vectors, forces: Numbers, count: int, target: Numbers
-) -> None:
-    """Add to velocities or accelerations what joints answer to the ``forces`` (2 count,) of points."""
-    answer(scene, points, measures, forces, count)
+def pass_on(scene: RigidScene, equations: Equations, which: int, count: int, target: Numbers) -> None:
+    """Add to velocities or accelerations what joints answer to the forces ``which`` of points."""
+    answer(scene, equations.points, equations.measures, equations.vectors[which], count)
     push_by_rows(target, scene.joint_numbers, scene.joints)
 
 
 @inlined
-def book_answer(
-    scene: RigidScene, points: Points, measures: Vectors, forces: Numbers, count: int, q: Numbers, v: Numbers,
-    given: Numbers,
-) -> None:  # fmt: skip
-    """Add what joints give in a second as they answer the ``forces`` (2 count,) of points in (q, v)."""
-    answer(scene, points, measures, forces, count)
-    book_rows(q, v, given, scene.joint_numbers, scene.joints)
+def book_forces(
+    scene: RigidScene, equations: Equations, count: int, q: Numbers, v: Numbers, given: Numbers
+) -> None:
+    """Add what the forces of points give in a second in (q, v), and joints that answer them."""
+    book_contacts(scene, equations, count, q, v, given)
+    if scene.joints[L.ROWS] > 0:
+        answer(scene, equations.points, equations.measures, equations.vectors[UNKNOWN], count)
+        book_rows(q, v, given, scene.joint_numbers, scene.joints)
 
 
 @inlined
 def book_impulses(
-    scene: RigidScene, points: Points, measures: Vectors, impulses: Numbers, count: int, q: Numbers,
-    v: Numbers, account: Vectors,
-) -> None:  # fmt: skip
-    """Book what joints give as they answer ``impulses`` (2 count,) at points, at a moment."""
-    answer(scene, points, measures, impulses, count)
+    scene: RigidScene, equations: Equations, count: int, q: Numbers, v: Numbers, account: Vectors
+) -> None:
+    """Book what joints give as they answer the impulses at points, at a moment."""
+    answer(scene, equations.points, equations.measures, equations.vectors[UNKNOWN], count)
     for role in (HOLD, MOTOR):
         cause = JOINTS if role == HOLD else MOTORS
         power, px, py, spin, driven = given_by_rows(q, v, scene.joint_numbers, scene.joints, role)

@@ -15,13 +15,13 @@ from physicslab.kernels.joints.layout import ROWS
 from physicslab.kernels.ode.dop853_tableau import LAST
 from physicslab.kernels.rigid import features as F
 from physicslab.kernels.rigid import smooth_segment, touching
-from physicslab.kernels.rigid.budget import book_contacts, book_speeds
+from physicslab.kernels.rigid.budget import book_speeds
 from physicslab.kernels.rigid.complementarity import NOT_FOUND, SETTLED, solve_complementarity
 from physicslab.kernels.rigid.constraints import apply, find_loads, measure_all, project
 from physicslab.kernels.rigid.equations import FREE, OPEN, SLIDES_BACK, SLIDES_ON, STICKS, UNKNOWN, Equations
 from physicslab.kernels.rigid.features import GIVEN, MU, PAIR, STATUS, VN, VT, Points, RigidScene
 from physicslab.kernels.rigid.impacts import approaches
-from physicslab.kernels.rigid.joined import book_answer
+from physicslab.kernels.rigid.joined import book_forces
 from physicslab.kernels.rigid.least_norm import solve_equations
 from physicslab.kernels.rigid.passing import longest_segment, share_of_ways
 from physicslab.kernels.rigid.segment_end import (
@@ -239,10 +239,7 @@ def begin_motion(
         book_speeds(of, q, v, -1.0)
         for i in range(3 * of.rows):
             v[i] = 0.0
-        book_contacts(of, points, closed, q, v, at.acceleration)
-        if of.joints[ROWS] > 0:
-            forces = points.vectors[UNKNOWN]
-            book_answer(of, points.points, points.measures, forces, closed, q, v, at.acceleration)
+        book_forces(of, points, closed, q, v, at.acceleration)
         return DONE, closed, rest, True
     if closed > 0:
         project(of, points, closed, q, v)
@@ -290,7 +287,5 @@ def stop_sliding(
         stopped = stopped or (abs(before) > touching.SLOW * rest and back >= -touching.SLOW * rest)
         # Impulses act along the mean of the speeds before and after.
         points[i, STATUS], measures[i, VT] = SLIDES_ON, 0.5 * (before + after)
-    book_contacts(scene, equations, count, q, v, v)
-    if scene.joints[ROWS] > 0:
-        book_answer(scene, points, measures, vectors[UNKNOWN], count, q, v, v)
+    book_forces(scene, equations, count, q, v, v)
     return stopped

@@ -71,7 +71,7 @@ def drive(
         apply(of, points, 1, v)
         book_row(of, points, 0, q, old, v, 0.5 * h, acceleration, account[MOTORS], account[HAND])
         if of.joints[ROWS] > 0:
-            book_impulses(of, points.points, points.measures, points.vectors[UNKNOWN], 1, q, v, account)
+            book_impulses(of, points, 1, q, v, account)
 
 
 @inlined

@@ -17,13 +17,7 @@ import numpy as np
 from physicslab.kernels import Rows, Vectors, allocating, inlined
 from physicslab.kernels.arguments import Acting, Inverse, Log, Materials, Motion, Near
 from physicslab.kernels.broad.fat_boxes import all_inside, left
-from physicslab.kernels.broad.near_pairs import (
-    comes_near,
-    give_record,
-    list_near,
-    merge_tail,
-    rank_of,
-)
+from physicslab.kernels.broad.near_pairs import comes_near, give_record, list_near, merge_tail, rank_of
 from physicslab.kernels.constraint.pair import ContactFrame, point_velocity, velocity_of
 from physicslab.kernels.geometry.apart import NEXT, SINCE
 from physicslab.kernels.geometry.contact import list_touching

@@ -125,30 +125,18 @@ FIELDS = (
         "crossed_fields", "A charge on a cycloid, in an electric and a magnetic field", Vector2(0.5, -1.0)
     ),
     _charged(
-        name="rutherford",
-        title="Two charges of one sign meet, and scatter",
-        build=_two_charges,
-        error=_rutherford_error,
-        times=(1.0, 3.0),
-        compared="places when they are nearest, and 2 s later",
-        measure="largest distance from the true place [m]",
-        keeps={"energy", "momentum", "angular_momentum"},
+        name="rutherford", title="Two charges of one sign meet, and scatter", build=_two_charges,
+        error=_rutherford_error, times=(1.0, 3.0), compared="places when they are nearest, and 2 s later",
+        measure="largest distance from the true place [m]", keeps={"energy", "momentum", "angular_momentum"},
     ),
     Problem(
-        name="two_molecules",
-        title="Two molecules that oscillate, ten periods",
-        group="molecules",
-        build=_two_molecules,
-        error=_molecules_error,
-        times=(10.0 * _PERIOD,),
-        good=1e-6,
-        excellent=1e-10,
-        compared="x, y, vx, vy after ten periods, which are found by quadrature",
-        ladder=Ladder(2048),
+        name="two_molecules", title="Two molecules that oscillate, ten periods", group="molecules",
+        build=_two_molecules, error=_molecules_error, times=(10.0 * _PERIOD,), good=1e-6, excellent=1e-10,
+        compared="x, y, vx, vy after ten periods, which are found by quadrature", ladder=Ladder(2048),
         measure="largest error of x, y and of vx, vy over the rate [m]",
         keeps={"energy", "momentum", "angular_momentum"},
     ),
-)
+)  # fmt: skip
 """Every problem with forces of this kind."""
 
 

@@ -130,14 +130,9 @@ type _Drawn = tuple[_Pixels, list[str]]
 
 
 def draw_instruments(
-    world: World,
-    instruments: Sequence[Instrument],
-    selected: Collection[int],
-    labels: Labels,
-    covered: Sequence[Rect],
-    on: Drawing,
-    room: Rect | None = None,
-) -> dict[int, Rect]:
+    world: World, instruments: Sequence[Instrument], selected: Collection[int], labels: Labels,
+    covered: Sequence[Rect], on: Drawing, room: Rect | None = None,
+) -> dict[int, Rect]:  # fmt: skip
     """Draw instruments with what they read; return where the words of each are [px].
 
     Labels keep clear of all lines, of the bodies that points go with, of each other and of what is covered;

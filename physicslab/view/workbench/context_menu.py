@@ -117,14 +117,9 @@ def _of_joint(ui: Ui, world: World, entity: int) -> None:
             for speed in (None, *_SPEEDS) if shown else ():
                 words = "Off" if speed is None else f"{speed:g} {unit}"
                 ui.item(
-                    f"Motor: {words}",
-                    _set,
-                    entity,
-                    name,
-                    {"motor_speed": speed},
-                    shown=words,
+                    f"Motor: {words}", _set, entity, name, {"motor_speed": speed}, shown=words,
                     on=now == speed,
-                )
+                )  # fmt: skip
             if shown and now:
                 ui.item("Motor: back", _set, entity, name, {"motor_speed": -now}, shown="The other way round")
     if kind is Pin:
