@@ -314,7 +314,7 @@ def test_what_is_waited_for_is_there_before_the_rest(mark: Path, monkeypatch: py
         waiting._wait([motion.clear])
         assert not waiting.finished
         waiting.advance(DARK)
-        corner = {tuple(display.canvas.surface.get_at((x, 690)))[:3] for x in range(1000, 1270)}
+        corner = {tuple(display.canvas.surface.get_at((x, 14)))[:3] for x in range(1000, 1270)}
         assert DARK.panel in corner
 
 

@@ -132,8 +132,11 @@ def groups_of(state: State, schedule: Schedule, rows: Rows) -> Partition:
     if len(own) > MAX_ISLANDS:
         return Partition((rows,), sentence("many_islands", limit=MAX_ISLANDS))
     if len(own) == 1:
-        why = "islands_all_soft" if soft else "large_islands" if most == MAX_BODIES else "costly_islands"
-        return Partition((rows,), sentence(why) if soft else sentence(why, limit=MAX_BODIES))
+        if soft:
+            return Partition((rows,), sentence("islands_all_soft"))
+        if most < MAX_BODIES:
+            return Partition((rows,), sentence("costly_islands", limit=MAX_BODIES))
+        return Partition((rows,), sentence("large_islands", limit=MAX_BODIES))
     return Partition(tuple(sorted(own, key=lambda group: int(group[0]))))
 
 
