@@ -127,8 +127,9 @@ def groups_of(state: State, schedule: Schedule, rows: Rows) -> Partition:
     if len(groups) == 1:
         return Partition((rows,), sentence("all_near"))
     soft = why_all_soft(state, schedule) is not None
-    most = 0 if soft else _most_apart(state, schedule, groups)
-    own = _advanced_apart(state, schedule, groups, most)
+    flies = np.zeros(len(state.entity_index), np.bool_) if soft else _may_fly(state, schedule)
+    most = 0 if soft else _most_apart(state, [group for group in groups if not flies[group].all()])
+    own = _advanced_apart(state, schedule, groups, flies, most)
     if len(own) > MAX_ISLANDS:
         return Partition((rows,), sentence("many_islands", limit=MAX_ISLANDS))
     if len(own) == 1:
@@ -140,21 +141,25 @@ def groups_of(state: State, schedule: Schedule, rows: Rows) -> Partition:
     return Partition(tuple(sorted(own, key=lambda group: int(group[0]))))
 
 
-def _most_apart(state: State, schedule: Schedule, groups: Sequence[Rows]) -> int:
-    """Return up to how many bodies islands are apart that may have rigid contacts: ``MAX_BODIES``, or fewer.
-
-    A step of these takes as long as the cube of their number, up to 20 ms: all islands together are to take
-    no longer than one of ``MAX_BODIES``, unless rigid ones are asked for. Those that may fly in closed form
-    between impacts take next to none.
-    """
-    if state.simulation.contacts == "rigid":
-        return MAX_BODIES
+def _may_fly(state: State, schedule: Schedule) -> NDArray[np.bool_]:
+    """Return which rows (rows,) may fly in closed form between impacts, which takes next to no time."""
     flies = np.zeros(len(state.entity_index), np.bool_)
     if why_never_exact(state, schedule) is None:
         flies = state.table(Material)["restitution"] > 0.0
         flies[turning_rows(state)] = False
+    return flies
+
+
+def _most_apart(state: State, groups: Sequence[Rows]) -> int:
+    """Return up to how many bodies islands are apart that may have rigid contacts: ``MAX_BODIES``, or fewer.
+
+    A step of these takes as long as the cube of their number, up to 20 ms: all islands together are to take
+    no longer than one of ``MAX_BODIES``, unless rigid ones are asked for.
+    """
+    if state.simulation.contacts == "rigid":
+        return MAX_BODIES
     shaped, cost, most = state.table(Shape).present, 0, 0
-    sizes = Counter(int(np.count_nonzero(shaped[group])) for group in groups if not flies[group].all())
+    sizes = Counter(int(np.count_nonzero(shaped[group])) for group in groups)
     for size, count in sorted(sizes.items()):
         cost += count * size**3 if size <= MAX_BODIES else 0
         if cost > MAX_BODIES**3:
@@ -164,19 +169,20 @@ def _most_apart(state: State, schedule: Schedule, groups: Sequence[Rows]) -> int
 
 
 def _advanced_apart(
-    state: State, schedule: Schedule, groups: Sequence[Rows], most: int
+    state: State, schedule: Schedule, groups: Sequence[Rows], flies: NDArray[np.bool_], most: int
 ) -> list[Rows]:  # fmt: skip
     """Return islands, of which those are together that would not be advanced better on their own.
 
-    These are those of more than ``most`` bodies that can touch something. Where none is better off alone,
-    those of very unlike masses, which may need more substeps than others, are together by themselves, unless
-    they are most bodies.
+    These are those of more than ``most`` bodies that can touch something, unless each ``flies``. Where none
+    is better off alone, those of very unlike masses, which may need more substeps than others, are together
+    by themselves, unless they are most bodies.
     """
     shaped = state.table(Shape).present
     own, loaded, rest = list[Rows](), list[Rows](), list[Rows]()
     for group in groups:
         touching = np.count_nonzero(shaped[group])
-        if touching <= most or (touching < len(group) and touching <= MAX_BODIES):
+        free = touching < len(group) or flies[group].all()
+        if touching <= most or (free and touching <= MAX_BODIES):
             own.append(group)
         else:
             apart = most == 0 and touching <= MAX_BODIES and schedule.forces and _are_unequal(state, group)
