@@ -85,7 +85,7 @@ class Screen:
                 if program.poll() is None:
                     self.do("key", "Escape")
             out, err = program.communicate(timeout=20)
-            assert (program.returncode, out, err) == (0, "", "")
+            assert (program.returncode, out, err) == (0, "", ""), (program.returncode, out, err)
         finally:
             program.kill()
             program.communicate()

@@ -243,6 +243,17 @@ def test_a_worker_compiles_what_it_is_given() -> None:
     assert done.stdout == f"{name}\n"
 
 
+@pytest.mark.skipif(os.name != "posix", reason="signals to groups of processes")
+def test_a_worker_ends_without_a_word(mark: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    """One that was still importing told on stderr of the signal that ended it, or of Ctrl+C's."""
+    says = "import signal, time; signal.signal(signal.SIGTERM, lambda *_: exit('ended by SIGTERM'))"
+    with Warmup(1, (sys.executable, "-c", f"{says}; print(input(), flush=True); time.sleep(60)")) as warmup:
+        (process,) = warmup._processes
+        assert os.getpgid(process.pid) != os.getpgrp(), "it would get what a terminal sends"
+        assert warmup._answers.get(timeout=30)
+    assert process.returncode == -signal.SIGKILL and capfd.readouterr().err == ""
+
+
 def test_the_window_shows_progress_and_stays_awake(mark: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     workers = Warmup(1, SLOW)
     asleep = [Waiting("no kernel that is there")]

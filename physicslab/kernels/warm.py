@@ -156,7 +156,7 @@ class Warmup:
         with self._lock:
             self._workers = 0
         for process in self._processes:
-            process.terminate()
+            process.kill()  # one that is still importing would say on stderr what ended it
         for thread in self._threads:
             thread.join()
 
@@ -174,7 +174,7 @@ class Warmup:
         environment = {**os.environ, **processor_variables(), cache.VARIABLE: str(cache.cache_directory())}
         process = subprocess.Popen(
             self._command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, bufsize=1,
-            env=environment,
+            env=environment, start_new_session=True,  # Ctrl+C is for the program, which ends its workers
         )  # fmt: skip
         thread = threading.Thread(target=self._employ, args=(process,), daemon=True)
         self._processes.append(process)
