@@ -3,13 +3,15 @@
 import csv
 import json
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
 from physicslab.cli import main
+from physicslab.commands import measured_run
 from physicslab.components import Transform
 from physicslab.diagnostics.step_watch import StepWatch
 from physicslab.ecs.component import InvalidValue
@@ -140,20 +142,28 @@ def test_run_reports_a_storm_of_impacts_within_one_of_many_compiled_steps(
     assert json.loads(Path("o.json").read_text())["advice"] == [] and capsys.readouterr().err == ""
 
 
-def test_run_says_where_it_is_slow(
-    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize("waits", [False, True])
+def test_run_says_where_it_is_slow_and_not_that_it_waited_for_another_program(
+    waits: bool, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    stepping = World.stepping
+    stepping, late = World.stepping, {"perf_counter": 0.0, "thread_time": 0.0}
 
     def sluggish(world: World, **options: Any) -> Iterator[int]:
         for done in stepping(world, **options):
             if done == 3:
-                time.sleep(1.1)
+                late["perf_counter"], late["thread_time"] = 1.1, 0.0 if waits else 1.1
             yield done
 
+    def clock(name: str) -> Callable[[], float]:
+        return lambda: float(getattr(time, name)()) + late[name]
+
     monkeypatch.setattr(World, "stepping", sluggish)
+    monkeypatch.setattr(measured_run, "time", SimpleNamespace(**{name: clock(name) for name in late}))
     assert main(["run", "stack", "--steps", "5", "--json", "o.json"]) == 0
     line = capsys.readouterr().err
+    if waits:
+        assert line == "" and json.loads(Path("o.json").read_text())["advice"] == []
+        return
     assert (
         line.startswith("physicslab: stack: slow: the step to t = 0.05 s took 1.") and line.count("\n") == 1
     )

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from physicslab import World, load_scene, save_scene
-from physicslab.components import Mass, Pin, Rod, Shape, Slot, Spring, Transform, Velocity, Weld
+from physicslab.components import Mass, Pin, Pulley, Rod, Shape, Slot, Spring, Transform, Velocity, Weld
 from physicslab.diagnostics.energy import measure_account, measure_energy
 from physicslab.diagnostics.joints import joint_states
-from physicslab.diagnostics.warnings import find_warnings
+from physicslab.diagnostics.warnings import ModelWarning, WorstWarnings, find_warnings
 from physicslab.ecs.component import InvalidValue
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.vector import Vector2
@@ -337,3 +337,28 @@ def test_what_is_light_before_a_heavy_load_is_no_contradiction_and_the_substeps_
     world.simulation = replace(world.simulation, substeps=74)
     world.run(seconds=1.0)
     assert not [*find_warnings(world)] and max(joint_figures.figures_of(world).stretch) < 1e-4
+
+
+@pytest.mark.parametrize("substeps", [1, 4])
+def test_substeps_that_are_named_are_enough_where_a_rope_comes_to_its_wheel_at_a_speed(substeps: int) -> None:
+    """Twice as many were named, and then again: joints give by the way in a substep, not by a load."""
+    world = World(simulation=SimulationConfig(substeps=substeps))
+    for x, mass, name in ((-1.0, 2.4, "heavy"), (1.0, 0.3, "light")):
+        circle(world, (x, -3.0), radius=0.1, mass=mass, name=name)
+    world.spawn(Pulley(a="heavy", b="light", wheel_a=(-1.0, 0.0), wheel_b=(1.0, 0.0), ratio=2.0), name="rope")
+    world.mark()
+
+    def advised() -> list[ModelWarning]:
+        worst = WorstWarnings()
+        for _ in range(120):
+            world.step()
+            worst.add(find_warnings(world))
+        return [*worst.all]
+
+    (advice,) = [one for one in advised() if "does not hold what it joins" in one.what]
+    assert world.plan.contact_reason == WITHOUT_END
+    world.reset()
+    world.simulation = replace(world.simulation, substeps=int(advice.setting.split()[-1]))
+    (left,) = advised()
+    assert "joints are soft" in left.what and left.entity == "rope" and 0.0 < (left.value or 0.0) < 0.09
+    assert abs(world.component("light", Transform).position.y) < 0.01

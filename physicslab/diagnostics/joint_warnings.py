@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,6 +33,8 @@ the energy and more; each tenfold beyond costs four, until a row is taken for th
 LOST_LIMIT = 0.1
 """Share of the energy exchanged that joints may have taken where bodies that they hold bounce: elastic discs
 in pairs on rods lose half of theirs in a second, and nothing where contacts are rigid."""
+_MARGIN = 1.5
+"""Between two looks at a run joints are further apart than those seen."""
 _MOST_ROWS = 100
 """Number of rows up to which it is looked for contradictions."""
 
@@ -58,9 +61,12 @@ def joint_warnings(world: World) -> Iterator[ModelWarning]:
         yield ModelWarning.about(world, joints[worst].entity, what, setting=where)
         return
     told = stretch > limit and (bool(dependent.any()) or _contradict(world, limit))
+    if stretch <= limit:
+        yield from _softness(world, joints[worst].entity, stretch)
     if stretch > limit and (told or isinstance(world.stepper, Soft)):  # others close what can be closed
         what = sentence("contradicts") if told else sentence("does_not_hold")
-        setting = "" if told else f"simulation.substeps = {_substeps(world, float(figures.size[worst]))}"
+        needed = _substeps(world, float(figures.size[worst]), stretch / limit)
+        setting = "" if told else f"simulation.substeps = {needed}"
         if (
             not told
             and joints[worst].own.start in world.joints.blocks.nodes[:-1, ROW][world.joints.blocks.gives_way]
@@ -91,19 +97,32 @@ def _has_no_direction(world: World, joint: Joint) -> bool:
     return joint.kind is Rod and not measured_terms(world)[joint.first, AX : BY + 1].any()
 
 
-def _substeps(world: World, size: float) -> int:
+def _softness(world: World, joint: int, stretch: float) -> Iterator[ModelWarning]:
+    """Yield how far joints give that are soft as exact ones had to be given up."""
+    if stretch > 0.0 and isinstance(world.stepper, Soft) and world.plan.contact_reason == WITHOUT_END:
+        what, why = sentence("soft_joints"), world.plan.contact_reason
+        finer = f"simulation.substeps = {min(4 * world.simulation.substeps, SUBSTEPS_LIMIT)}"
+        yield replace(ModelWarning.about(world, joint, what, stretch, "m", 0.0, finer), because=why)
+
+
+def _substeps(world: World, size: float, times: float) -> int:
     """Return how many substeps would let soft joints hold, and at least twice as many as there are.
 
     A light body that carries M/m times its weight on links of a ``size`` [m] swings sideways at the rate
-    sqrt(2 M g / m L), as a loaded string does; a substep has to follow it.
+    sqrt(2 M g / m L), as a loaded string does; a substep has to follow it. Joints that are so many ``times``
+    too far apart without that were met at a speed, as a wheel is by the end of its rope: they give by the way
+    in a substep.
     """
     joints, mass = world.joints, world.bodies.inverse_mass
     ends = np.stack((mass[joints.a], mass[joints.b]))
     ends = ends[:, (ends > 0.0).all(axis=0)]
     ratio = float((ends.max(axis=0) / ends.min(axis=0)).max(initial=1.0))
     rate = math.sqrt(2.0 * ratio * math.hypot(*world.physics.gravity) / size)
+    substeps = world.simulation.substeps
     needed = min(rate * world.simulation.dt, SUBSTEPS_LIMIT)
-    return min(max(math.ceil(needed), 2 * world.simulation.substeps), SUBSTEPS_LIMIT)
+    if needed <= 2 * substeps:
+        needed = min(substeps * max(_MARGIN * times, 2.0), SUBSTEPS_LIMIT)
+    return math.ceil(needed)
 
 
 def _moves(world: World) -> NDArray[np.bool_]:

@@ -240,6 +240,7 @@ SENTENCES = {
     "idle_joint": "joins what no force moves, and does nothing",
     "contradicts": "contradicts other joints: not all can be kept",
     "does_not_hold": "does not hold what it joins",
+    "soft_joints": "gives a little, as joints are soft; what they hold is off by about so much",
     "gives_way": "gives way as a spring does: more joints hold each other than are solved at once",
     "bounces_alone": "bounces as if without its joints, which take the energy that this leaves along them",
     "redundant": "holds what other joints hold already: how they share the load is not determined (rows)",
