@@ -1,7 +1,7 @@
 """Command lines and scripts in processes of their own that need not import the program first.
 
-One process imports it, and forks for each of them: the fork runs ``python -m physicslab.cli``, or a script, to
-its end, and that of the interpreter, in a fraction of the time of a fresh process.
+One process imports it, and forks for each of them: the fork runs ``python -m physicslab.cli``, or a script,
+to its end, and that of the interpreter, in a fraction of the time of a fresh process.
 """
 
 from __future__ import annotations

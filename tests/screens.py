@@ -45,9 +45,10 @@ class Screen:
         before, found = b"", self._memory()
         while found != before:  # a window was drawing
             before, found = found, self._memory()
-        header = np.frombuffer(found, ">u4", 20)
-        skipped, width, height, stride = int(header[0] + 12 * header[19]), *header[[4, 5, 12]].tolist()
-        rows = np.frombuffer(found, np.uint8, stride * height, skipped).reshape(height, stride)
+        header = np.frombuffer(found, ">u4", 20).astype(int).tolist()
+        width, height, stride = header[4], header[5], header[12]
+        begin = header[0] + 12 * header[19]  # a table of colours stands between
+        rows = np.frombuffer(found, np.uint8, stride * height, begin).reshape(height, stride)
         pixels = rows[:, : 4 * width].reshape(height, width, 4)
         return pixels[..., 2::-1].swapaxes(0, 1).astype(np.int64)  # blue comes first
 
