@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from physicslab.components import Shape, Transform
 from physicslab.components.shape import CHAIN
 from physicslab.ecs.vector import Vector2
-from physicslab.state.shapes import cores_of, lengths_of
+from physicslab.state.shapes import cores_of
 from physicslab.state.state import State
 
 type Numbers = NDArray[np.float64]
@@ -50,7 +50,7 @@ class Outlines:
         """Return the same elsewhere."""
         return replace(self, place=self.place + np.array((by.x, by.y)))
 
-    def only(self, which: NDArray[np.bool_] | list[int]) -> Outlines:
+    def only(self, which: NDArray[np.bool_] | Rows) -> Outlines:
         """Return some of them, with places of their own."""
         return Outlines(*(getattr(self, each.name)[which] for each in fields(self)))
 
@@ -102,8 +102,7 @@ def outlines_of(state: State, rows: Rows) -> Outlines:
 
 def outlines_at(state: State, rows: Rows, place: Numbers, angle: Numbers) -> Outlines:
     """Return outlines of the shapes in some rows, at places (n, 2) [m] and turned by angles (n,) [rad]."""
-    half, radius = lengths_of(state.table(Shape), rows)
-    corners, vertices, _ = cores_of(state.table(Shape), rows)
+    corners, vertices, radius, half = cores_of(state.table(Shape), rows)
     line = state.table(Shape)["kind"][rows] == CHAIN
     half[line] = np.hypot(*half[line].T)[:, None]
     c, s = np.cos(angle), np.sin(angle)

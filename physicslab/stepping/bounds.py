@@ -56,27 +56,27 @@ def return_inside(state: State, schedule: Schedule) -> int:
     """
     noted, state.contacts.outside = state.contacts.outside, 0
     solid, velocity = solid_rows(state), state.table(Velocity)
-    fixed, movable = solid[~velocity.present[solid]], solid[state.bodies.inverse_mass[solid] > 0.0]
+    fixed = np.flatnonzero(~velocity.present[solid])
     if not len(fixed):
         return 0
     low, high = _room(state)
-    within = _may_be_within(state, fixed if noted & WEDGED else fixed[:0])
-    movable = movable[np.isin(movable, np.concatenate((_pressed(state), within)))]
-    bodies, places = outlines_of(state, movable), dict[int, Numbers]()
+    bodies, places = outlines_of(state, solid), dict[int, Numbers]()
     beyond = _beyond(bodies, low, high) > BEYOND * bodies.size[:, None]
-    kept = beyond.any(axis=1) | np.isin(movable, within)
-    held = outlines_of(state, fixed)
-    for n in np.flatnonzero(kept).tolist():
+    kept = beyond.any(axis=1) & np.isin(solid, _pressed(state))
+    if noted & WEDGED:
+        kept[_may_be_within(state, bodies, solid, fixed)] = True
+    held = bodies.only(fixed)
+    for n in np.flatnonzero(kept & (state.bodies.inverse_mass[solid] > 0.0)).tolist():
         touched = held
         if is_any_apart(state):
-            touched = held.only(may_touch(state, np.full(len(fixed), movable[n]), fixed))
+            touched = held.only(may_touch(state, np.full(len(fixed), solid[n]), solid[fixed]))
         if _is_kept(bodies, n, touched, _INWARDS[beyond[n]]):
             place = _free_place(bodies, n, touched, low, high)
             if place is not None:
                 places[n] = place
     if places:
         numbers = np.array(list(places))
-        _put(state, schedule, movable[numbers], np.array(list(places.values())), beyond[numbers])
+        _put(state, schedule, solid[numbers], np.array(list(places.values())), beyond[numbers])
     return len(places)
 
 
@@ -96,19 +96,18 @@ def _pressed(state: State) -> Rows:
     return pressed
 
 
-def _may_be_within(state: State, fixed: Rows) -> Rows:
-    """Return the rows (n,) of bodies in contact with fixed ones that they may be inside, by upright boxes."""
+def _may_be_within(state: State, bodies: Outlines, solid: Rows, fixed: Rows) -> Rows:
+    """Return which bodies (n,) are in contact with fixed ones that they may be inside, by upright boxes."""
     contacts = state.contacts
     pairs = contacts.manifolds[: contacts.recorded]
     pairs = pairs[(pairs["wall"] < 0) & (pairs["count"] > 0)]
-    is_fixed = np.zeros(len(state.entity_index), np.bool_)
-    is_fixed[fixed] = True
-    ends = np.stack((pairs["a"], pairs["b"])).astype(np.int64)
-    ends = np.concatenate((ends, ends[::-1]), axis=1)
-    rows, others = ends[:, (state.bodies.inverse_mass[ends[0]] > 0.0) & is_fixed[ends[1]]]
-    bodies, held = outlines_of(state, rows), outlines_of(state, others)
-    apart = np.abs(bodies.place - held.place) - held.reach
-    within: Rows = rows[(apart < bodies.reach - _WITHIN * bodies.size[:, None]).all(axis=1)]
+    numbers, is_fixed = np.full(len(state.entity_index), -1), np.zeros(len(solid), np.bool_)
+    numbers[solid], is_fixed[fixed] = np.arange(len(solid)), True
+    a, b = numbers[pairs["a"]], numbers[pairs["b"]]
+    n, m = np.concatenate((a, b)), np.concatenate((b, a))
+    n, m = n[is_fixed[m]], m[is_fixed[m]]
+    apart = np.abs(bodies.place[n] - bodies.place[m]) - bodies.reach[m]
+    within: Rows = n[(apart < bodies.reach[n] - _WITHIN * bodies.size[n, None]).all(axis=1)]
     return within
 
 
@@ -140,7 +139,7 @@ def _free_place(
     low, high = low + reach, high - reach
     if (high < low).any():
         return None  # it is larger than the world
-    own = bodies.only([n])
+    own = bodies.only(np.array([n]))
 
     def hits(place: Numbers) -> list[int]:
         own.place[0] = place
