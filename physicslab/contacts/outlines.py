@@ -51,7 +51,7 @@ class Outlines:
         return replace(self, place=self.place + np.array((by.x, by.y)))
 
     def only(self, which: NDArray[np.bool_] | Rows) -> Outlines:
-        """Return some of them, with places of their own."""
+        """Return some of them, by a mask (n,) or numbers (m,), with places of their own."""
         return Outlines(*(getattr(self, each.name)[which] for each in fields(self)))
 
     @cached_property
