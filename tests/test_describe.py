@@ -4,8 +4,8 @@ import pygame
 import pytest
 from desk import SETTLED, bits, click, sized, tap
 
-from physicslab import PhysicsConfig, describe, load_scene
-from physicslab.components import Mass, Rod, Shape, Transform, Velocity
+from physicslab import PhysicsConfig, Vector2, describe, load_scene
+from physicslab.components import Charge, Mass, Medium, Rod, Shape, Transform, Velocity
 from physicslab.scenes import SCENES
 from physicslab.world import World
 
@@ -41,6 +41,28 @@ def test_what_moves_how_and_what_holds_it_is_told() -> None:
     )
     assert f"Rod between {world.label(one)} and {world.label(other)}." in words
     assert f"Rod between {world.label(one)} and a fixed point." in words
+
+
+def test_fluids_charges_and_fields_are_told() -> None:
+    """A pool was a box that bodies were in, and a charge went round without a reason."""
+    physics = PhysicsConfig(gravity_mode="none", electric_field=Vector2(0.0, -2.0), magnetic_field=-0.5)
+    world = World(physics=physics)
+    world.spawn(Transform(), Velocity(), Mass(1.0), name="lone")
+    pool = Transform((0.0, 1.0)), Shape("box", width=8.0, height=4.0), Medium(1.5, flow=(0.5, 0.0))
+    world.spawn(*pool, name="pool")
+    assert "field" not in describe(world), "nothing is charged"
+    world.spawn(Transform(), Velocity(), Mass(1.0), Charge(-0.3), name="ion")
+    lines = describe(world).splitlines()
+    assert lines[1:4] == [
+        "There is no gravity.",
+        "An electric field of 2 N/C points downwards.",
+        "A magnetic field of 0.5 T points into the plane.",
+    ]
+    told = "box of 8 m by 4 m full of a fluid of 1.5 kg/m² that flows at 0.5 m/s to the right"
+    assert f"pool: {told}, fixed, at x = 0 m, y = 1 m." in lines
+    assert any(line.startswith("ion: point without outline with a charge of -0.3 C, 1 kg") for line in lines)
+    german = describe(world, "de")
+    assert "voll Flüssigkeit" in german and "mit einer Ladung von -0,3 C" in german
 
 
 def test_rounding_is_no_place_and_a_slow_world_is_not_at_rest() -> None:

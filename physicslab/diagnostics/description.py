@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterator, Mapping
 
-from physicslab.components import Gear, Mass, Shape, Spring, Transform, Velocity
+from physicslab.components import Charge, Gear, Mass, Medium, Shape, Spring, Transform, Velocity
 from physicslab.diagnostics.energy import measure_energy, measure_momentum
 from physicslab.diagnostics.scales import scales_of
 from physicslab.ecs.component import Component, InvalidValue
@@ -61,6 +61,7 @@ def _lines(world: World, own: Language) -> Iterator[str]:
         "t = {time} s. {moving}, {fixed}.", time=_number(world.time, own), moving=can_move, fixed=fixed
     )
     yield _gravity(world, own)
+    yield from _fields(world, own)
     scales = scales_of(world)
     for body in bodies[:_LISTED]:
         yield _body(world, body, own, scales)
@@ -105,6 +106,21 @@ def _gravity(world: World, own: Language) -> str:
     return own.say("Gravity is {size} m/s² {way}.", size=acceleration, way=way)
 
 
+def _fields(world: World, own: Language) -> Iterator[str]:
+    """Yield which fields act on charges, if anything is charged."""
+    physics = world.physics
+    electric, magnetic = physics.electric_field, physics.magnetic_field
+    if not len(world.batch(Charge)):
+        return
+    if size := electric.magnitude:
+        way = _way(electric, own)
+        yield own.say("An electric field of {size} N/C points {way}.", size=_number(size, own), way=way)
+    if magnetic:
+        tesla = _number(abs(magnetic), own)
+        out = own.say("out of the plane") if magnetic > 0.0 else own.say("into the plane")
+        yield own.say("A magnetic field of {size} T points {way}.", size=tesla, way=out)
+
+
 def _body(world: World, body: int, own: Language, scales: Mapping[str, float]) -> str:
     """Return what a body is, where it is, and how it moves."""
     place = world.component(body, Transform).position
@@ -112,6 +128,11 @@ def _body(world: World, body: int, own: Language, scales: Mapping[str, float]) -
     name, shape = world.label(body), own.say("point without outline")
     if world.has(body, Shape):
         shape = _shape(world.component(body, Shape), own)
+    if world.has(body, Medium):
+        shape = _filled(shape, world.component(body, Medium), own)
+    if world.has(body, Charge):
+        charge = _number(world.component(body, Charge).charge, own)
+        shape = own.say("{shape} with a charge of {charge} C", shape=shape, charge=charge)
     if not world.has(body, Velocity):
         return own.say("{name}: {shape}, fixed, at x = {x} m, y = {y} m.", name=name, shape=shape, x=x, y=y)
     mass = own.say("infinitely heavy")
@@ -140,6 +161,16 @@ def _shape(shape: Shape, own: Language) -> str:
         case "chain":
             return own.say_count("chain of {n} point", "chain of {n} points", len(shape.vertices))
     return own.say_count("polygon of {n} corner", "polygon of {n} corners", len(shape.vertices))
+
+
+def _filled(shape: str, medium: Medium, own: Language) -> str:
+    """Return what a shape is that a fluid fills, and how that flows."""
+    density, speed = _number(medium.density, own), medium.flow.magnitude
+    fluid = own.say("{shape} full of a fluid of {density} kg/m²", shape=shape, density=density)
+    if speed == 0.0:
+        return fluid
+    way = _way(medium.flow, own)
+    return own.say("{fluid} that flows at {speed} m/s {way}", fluid=fluid, speed=_number(speed, own), way=way)
 
 
 def _motion(velocity: Velocity, own: Language, scales: Mapping[str, float]) -> str:
