@@ -54,7 +54,7 @@ _KERNELS = (
     near_pairs.partition, near_pairs.carry_over, near_pairs.sort_scalar, slots.list_scalar,
 )  # fmt: skip
 _CONTACTS = 2
-"""Contacts that a body of a heap has at most, about: 40 of them in a room came to 64, and halted for 25 ms."""
+"""Contacts that a body of a heap has at most, about: 40 in a room came to 64, and halted for 25 ms."""
 _COSTS: dict[type[System], int] = {
     AccelerateSystem: soft.ACCELERATE, IntegrateSystem: soft.INTEGRATE, BroadPhaseSystem: soft.BROAD_PHASE,
     ContactSystem: soft.CONTACT, ResolveSystem: soft.RESOLVE, JointSystem: soft.RESOLVE,
