@@ -4,7 +4,6 @@ import os
 import sys
 from collections.abc import Sequence
 from contextlib import suppress
-from importlib.metadata import PackageNotFoundError
 
 import physicslab
 from physicslab.commands import FAILED, USAGE, CommandError, command, require_window, tell
@@ -113,7 +112,7 @@ def _open(scene: str | None) -> int:
 def _version() -> str:
     try:
         return f"physicslab {physicslab.__version__}"
-    except PackageNotFoundError:
+    except ModuleNotFoundError:  # as importlib.metadata says of a package
         return "physicslab from a folder, which is not installed and has no version"
 
 

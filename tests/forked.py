@@ -1,7 +1,7 @@
-"""Command lines in processes of their own that need not import the program first.
+"""Command lines and scripts in processes of their own that need not import the program first.
 
-One process imports it, and forks for each command line: the fork runs ``python -m physicslab.cli`` to its
-end, and that of the interpreter, in a fraction of the time of a fresh process.
+One process imports it, and forks for each of them: the fork runs ``python -m physicslab.cli``, or a script,
+to its end, and that of the interpreter, in a fraction of the time of a fresh process.
 """
 
 from __future__ import annotations
@@ -32,7 +32,10 @@ for line in sys.stdin:
             os.dup2(os.open(request[path], os.O_WRONLY | os.O_CREAT), number)
         os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
         sys.argv = ["physicslab", *request["line"]]
-        runpy.run_module("physicslab.cli", run_name="__main__", alter_sys=True)
+        if request["script"] is None:
+            runpy.run_module("physicslab.cli", run_name="__main__", alter_sys=True)
+        else:
+            exec(request["script"], {"__name__": "__main__"})
         sys.exit()
     _, status = os.waitpid(child, 0)
     print(os.waitstatus_to_exitcode(status), flush=True)
@@ -40,7 +43,7 @@ for line in sys.stdin:
 
 
 class ForkedProgram:
-    """Runs command lines one after the other; used in a ``with`` block.
+    """Runs command lines and scripts one after the other; used in a ``with`` block.
 
     Parameters
     ----------
@@ -69,13 +72,16 @@ class ForkedProgram:
         self._process.stdout.close()
         self._process.wait(60)
 
-    def run(self, line: Sequence[str]) -> tuple[int, bytes, bytes]:
-        """Run one command line; return its status and what it wrote on stdout and stderr."""
+    def run(self, line: Sequence[str], script: str | None = None) -> tuple[int, bytes, bytes]:
+        """Run one command line, or a script with these arguments.
+
+        Returns its status, which is negative where a signal ended it, and what it wrote on stdout and stderr.
+        """
         assert self._process.stdin is not None and self._process.stdout is not None
         for path in (self._out, self._err):
             path.unlink(missing_ok=True)
         request: dict[str, Any] = {
-            "line": list(line), "directory": str(self._directory),
+            "line": list(line), "script": script, "directory": str(self._directory),
             "stdout": str(self._out), "stderr": str(self._err),
         }  # fmt: skip
         self._process.stdin.write(json.dumps(request) + "\n")

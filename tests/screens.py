@@ -10,13 +10,12 @@ from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
-import pygame
 import pytest
 from numpy.typing import NDArray
 
 type Seen = Callable[[NDArray[np.int64]], bool]
 
-MISSING = [tool for tool in ("Xvfb", "xdotool", "import") if shutil.which(tool) is None]
+MISSING = [tool for tool in ("Xvfb", "xdotool") if shutil.which(tool) is None]
 needs_screen = pytest.mark.skipif(bool(MISSING), reason=f"not installed: {', '.join(MISSING)}")
 
 ROOT = Path(__file__).parent.parent
@@ -33,7 +32,6 @@ class Screen:
         self.environment.pop("SDL_VIDEODRIVER", None)
         self.environment["XDG_STATE_HOME"] = str(folder / "state")
         self.folder = folder
-        self.shots = 0
 
     def do(self, *words: object) -> str:
         """Run xdotool, and wait a little for the window to notice."""
@@ -43,13 +41,20 @@ class Screen:
         return done.stdout
 
     def picture(self) -> NDArray[np.int64]:
-        """Return what the screen shows, (width, height, 3)."""
-        self.shots += 1
-        path = self.folder / f"shot{self.shots}.ppm"
-        subprocess.run(
-            ["import", "-window", "root", "-depth", "8", str(path)], env=self.environment, check=True
-        )
-        return pygame.surfarray.array3d(pygame.image.load(path)).astype(np.int64)
+        """Return what the screen shows: red, green and blue (width, height, 3), from 0 to 255."""
+        before, found = b"", self._memory()
+        while found != before:  # a window was drawing
+            before, found = found, self._memory()
+        header = np.frombuffer(found, ">u4", 20).astype(int).tolist()
+        width, height, stride = header[4], header[5], header[12]
+        begin = header[0] + 12 * header[19]  # a table of colours stands between
+        rows = np.frombuffer(found, np.uint8, stride * height, begin).reshape(height, stride)
+        pixels = rows[:, : 4 * width].reshape(height, width, 4)
+        return pixels[..., 2::-1].swapaxes(0, 1).astype(np.int64)  # blue comes first
+
+    def _memory(self) -> bytes:
+        """Return what the server keeps of its screen: a header, colours, and rows of pixels."""
+        return (self.folder / "Xvfb_screen0").read_bytes()
 
     def until(self, seen: Seen, what: str) -> NDArray[np.int64]:
         """Take pictures until ``seen`` accepts one, and return it: a busy machine is late, not wrong."""
@@ -58,6 +63,7 @@ class Screen:
             picture = self.picture()
             if seen(picture):
                 return picture
+            time.sleep(0.05)
         raise AssertionError(f"not seen: {what}")
 
     def launch(self, *arguments: str, command: Sequence[str] = MAIN) -> subprocess.Popen[str]:
@@ -104,6 +110,7 @@ def screen(tmp_path: Path) -> Iterator[Screen]:
     # meanwhile.
     size = ["-screen", "0", "1280x720x24"]
     command = ["Xvfb", "-displayfd", str(writer), *size, "-nolisten", "tcp", "-noreset"]
+    command += ["-fbdir", str(tmp_path)]
     with subprocess.Popen(command, pass_fds=(writer,), stderr=subprocess.DEVNULL) as server:
         os.close(writer)
         with os.fdopen(reader) as number:

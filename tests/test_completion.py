@@ -62,7 +62,10 @@ import sys
 from physicslab.cli import main
 from physicslab.commands.usage import COMMANDS
 
-for line in (["--help"], ["--version"], *([name, "--help"] for name in COMMANDS), ["scenes"]):
+for line in (*([name, "--help"] for name in COMMANDS), ["scenes"]):
+    assert main(line) == 0, line
+    assert {"numba", "importlib.metadata"}.isdisjoint(sys.modules), line
+for line in (["--help"], ["--version"]):
     assert main(line) == 0, line
     assert "numba" not in sys.modules, line
 for name in COMMANDS:

@@ -7,7 +7,9 @@ The large numbers of the design are tried with
 
 from __future__ import annotations
 
+import itertools
 import random
+import time
 from typing import Any
 
 import numpy as np
@@ -448,6 +450,8 @@ def test_a_refused_write_is_no_part_of_the_run() -> None:
 
 
 def test_edits_leave_key_frames_along_the_line_as_runs_do(monkeypatch: pytest.MonkeyPatch) -> None:
+    """By a clock on which whatever is timed takes a moment, on any machine."""
+    monkeypatch.setattr(time, "perf_counter", itertools.count().__next__)
     monkeypatch.setattr(places_module, "_RARELY", 10.0)
     monkeypatch.setattr(places_module, "_SMOOTH", 0.0)
     history = History(box_of_discs(8))

@@ -4,12 +4,13 @@ import os
 import subprocess
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pygame
 import pytest
 from desk import Desk
+from forked import ForkedProgram
 
 from physicslab.cli import main
 from physicslab.desktop.autosave import Autosave
@@ -58,6 +59,12 @@ else:
 """
 
 
+@pytest.fixture(scope="module")
+def program(tmp_path_factory: pytest.TempPathFactory) -> Iterator[ForkedProgram]:
+    with ForkedProgram(tmp_path_factory.mktemp("program"), {}) as forked:
+        yield forked
+
+
 @pytest.mark.parametrize(
     ("way", "moment"),
     [
@@ -65,13 +72,14 @@ else:
         ("json", "write"), ("autosave", "write"), ("autosave", "replace"),
     ],
 )  # fmt: skip
-def test_a_kill_in_the_middle_leaves_the_old_file_whole(way: str, moment: str, tmp_path: Path) -> None:
+def test_a_kill_in_the_middle_leaves_the_old_file_whole(
+    way: str, moment: str, tmp_path: Path, program: ForkedProgram
+) -> None:
     path = tmp_path / "kept.json"
     save_scene(load_scene("drop"), path)
     old = path.read_bytes()
-    command = [sys.executable, "-c", WRITER, way, str(path), moment]
-    done = subprocess.run(command, capture_output=True, timeout=100, check=False)
-    assert done.returncode == -9, done.stderr.decode()
+    status, _, said = program.run([way, str(path), moment], WRITER)
+    assert status == -9, said.decode()
     assert path.read_bytes() == old
     (left,) = set(tmp_path.iterdir()) - {path}
     assert left.name.startswith(".kept.json.") and left.name.endswith(".physicslab-tmp")
@@ -159,7 +167,9 @@ def test_a_full_disk_leaves_the_old_file_whole(
 
 
 @pytest.mark.parametrize("way", ["save_scene", "json"])
-def test_a_limit_on_the_size_of_files_leaves_the_old_file_whole(way: str, tmp_path: Path) -> None:
+def test_a_limit_on_the_size_of_files_leaves_the_old_file_whole(
+    way: str, tmp_path: Path, program: ForkedProgram
+) -> None:
     """The system itself refuses to write on, in the middle of the file."""
     path = tmp_path / "kept.json"
     save_scene(load_scene("drop"), path)
@@ -176,9 +186,8 @@ def test_a_limit_on_the_size_of_files_leaves_the_old_file_whole(way: str, tmp_pa
         "try: save_scene(world, sys.argv[2])\n"
         "except OSError as error: print(error, file=sys.stderr); sys.exit(1)\n"
     )
-    command = [sys.executable, "-c", code, way, str(path)]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=100, check=False)
-    assert done.returncode == 1 and "File too large" in done.stderr
+    status, _, said = program.run([way, str(path)], code)
+    assert status == 1 and b"File too large" in said
     assert list(tmp_path.iterdir()) == [path] and path.read_bytes() == old
 
 

@@ -45,9 +45,10 @@ def test_many_bodies_are_welded_where_they_meet_by_one_act() -> None:
 
 def test_pins_are_made_from_the_list_drawn_selected_removed_and_undone() -> None:
     canvas = RecordingCanvas((1280, 720))
-    desk = Desk(empty_world(), canvas)
-    world, window = desk.world, desk.window
+    world = empty_world()
     one, other = two_bars(world)
+    desk = Desk(world, canvas)
+    window = desk.window
     desk.key("space")
     desk.frames()
     for entities, words in (((one, other), "Join by a pin"), ((one,), "Pin")):

@@ -22,10 +22,11 @@ from physicslab.view.window.materials import choose_material, materials
 
 
 def test_a_material_sets_mass_surface_and_colour_in_one_edit() -> None:
-    desk = Desk(empty_world())
-    world, window = desk.world, desk.window
+    world = empty_world()
     ball, bar = circle(world, (0.0, 0.0), radius=0.5), capsule(world, (2.0, 0.0), length=1.0, radius=0.25)
     floor = box(world, (0.0, -2.0), width=4.0, height=1.0, static=True)
+    desk = Desk(world)
+    window = desk.window
     desk.frames()
     choose_material(world, window, (ball, bar, floor), "steel")
     steel = SUBSTANCES["steel"]

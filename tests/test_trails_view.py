@@ -85,8 +85,9 @@ def test_trails_of_the_scene_come_back_as_long_as_they_were() -> None:
 
 
 def test_trails_are_as_they_were_set_last_wherever_undo_goes() -> None:
-    desk = Desk(empty_world(gravity=(0, 0)))
-    ball = circle(desk.world, (0, 0))
+    world = empty_world(gravity=(0, 0))
+    ball = circle(world, (0, 0))
+    desk = Desk(world)
     desk.frames(2)
     history = desk.window.edits.history
 

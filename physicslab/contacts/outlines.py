@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 
 import numpy as np
@@ -12,16 +12,13 @@ from numpy.typing import NDArray
 from physicslab.components import Shape, Transform
 from physicslab.components.shape import CHAIN
 from physicslab.ecs.vector import Vector2
-from physicslab.state.shapes import cores_of, lengths_of
+from physicslab.state.shapes import cores_of
 from physicslab.state.state import State
 
 type Numbers = NDArray[np.float64]
 """A float64 array, of bodies (n,) or of vectors (n, 2), or a vector (2,)."""
 type Rows = NDArray[np.int64]
 """Row numbers (n,)."""
-
-_PARALLEL = 1e-9
-"""Sine of the angle of two normals up to which they are one axis."""
 
 
 @dataclass(frozen=True)
@@ -53,11 +50,9 @@ class Outlines:
         """Return the same elsewhere."""
         return replace(self, place=self.place + np.array((by.x, by.y)))
 
-    def only(self, n: int) -> Outlines:
-        """Return the one in a row, with a place of its own."""
-        own = slice(n, n + 1)
-        place, corners, vertices = self.place[own].copy(), self.corners[own], self.vertices[own]
-        return Outlines(place, corners, vertices, self.radius[own], self.size[own], self.line[own])
+    def only(self, which: NDArray[np.bool_] | Rows) -> Outlines:
+        """Return some of them, by a mask (n,) or numbers (m,), with places of their own."""
+        return Outlines(*(getattr(self, each.name)[which] for each in fields(self)))
 
     @cached_property
     def reach(self) -> Numbers:
@@ -107,8 +102,7 @@ def outlines_of(state: State, rows: Rows) -> Outlines:
 
 def outlines_at(state: State, rows: Rows, place: Numbers, angle: Numbers) -> Outlines:
     """Return outlines of the shapes in some rows, at places (n, 2) [m] and turned by angles (n,) [rad]."""
-    half, radius = lengths_of(state.table(Shape), rows)
-    corners, vertices, _ = cores_of(state.table(Shape), rows)
+    corners, vertices, radius, half = cores_of(state.table(Shape), rows)
     line = state.table(Shape)["kind"][rows] == CHAIN
     half[line] = np.hypot(*half[line].T)[:, None]
     c, s = np.cos(angle), np.sin(angle)
@@ -129,63 +123,58 @@ def overlap(one: Outlines, n: int, two: Outlines, m: int) -> tuple[float, Number
     ``one``. Directions of edges and between middles and the nearest corners are tried (Ericson, Real-Time
     Collision Detection, 2005, 5.2).
     """
-    offset = two.place[m] - one.place[n]
-    axes = [*_axes(one, n), *_axes(two, m)]
+    axes = np.concatenate((_axes(one, n), _axes(two, m)))
     if one.radius[n] + two.radius[m] > 0.0:
-        axes += _between(one, n, two, m)
-    if not axes:
-        axes = [np.array((0.0, 1.0))]  # two discs at one place
-    found = []
-    for axis in axes:
-        for way in (axis, -axis):
-            found.append((_extent(one, n, way) + _extent(two, m, -way) - float(offset @ way), way))
-    return min(found, key=lambda pair: pair[0])
+        axes = np.concatenate((axes, _between(one, n, two, m)))
+    if not len(axes):
+        axes = np.array(((0.0, 1.0),))  # two discs at one place
+    ways = np.stack((axes, -axes), axis=1).reshape(-1, 2)
+    depth = _lengths(one, n, two, m, ways)
+    least = int(depth.argmin())
+    return float(depth[least]), ways[least]
 
 
-def _between(one: Outlines, n: int, two: Outlines, m: int) -> list[Numbers]:
-    """Return the direction (2,) from the point of a core that is nearest to another core to that one's."""
-    ways = []
-    for core, centre, other, k, sign in ((one, n, two, m, 1.0), (two, m, one, n, -1.0)):
-        for corner in core.place[centre] + core.corners[centre, : core.vertices[centre]]:
-            ways.append(sign * (_nearest(other, k, corner) - corner))
-    shortest = min(ways, key=lambda way: float(np.hypot(*way)))
-    length = float(np.hypot(*shortest))
-    return [shortest / length] if length > 0.0 else []
+def _between(one: Outlines, n: int, two: Outlines, m: int) -> Numbers:
+    """Return the direction (1, 2) from the point of a core that is nearest to another core to that one's.
+
+    None (0, 2) where these points are one.
+    """
+    ways = np.concatenate((_to_nearest(one, n, two, m), -_to_nearest(two, m, one, n)))
+    lengths = np.hypot(*ways.T)
+    shortest = int(lengths.argmin())
+    found: Numbers = ways[shortest : shortest + 1] / (lengths[shortest] or 1.0)
+    return found if lengths[shortest] > 0.0 else ways[:0]
 
 
 def exits(one: Outlines, n: int, two: Outlines, m: int) -> list[Numbers]:
     """Return the ways (2,) [m] along the edges of ``one`` and the world's axes on which ``two`` leaves it."""
-    offset = two.place[m] - one.place[n]
-    ways = []
-    for axis in (*_axes(one, n), np.array((1.0, 0.0)), np.array((0.0, 1.0))):
-        along = float(offset @ axis)
-        ways.append((_extent(one, n, axis) + _extent(two, m, -axis) - along) * axis)
-        ways.append(-(_extent(one, n, -axis) + _extent(two, m, axis) + along) * axis)
-    return ways
+    axes = np.concatenate((_axes(one, n), ((1.0, 0.0), (0.0, 1.0))))
+    ways = np.stack((axes, -axes), axis=1).reshape(-1, 2)
+    return list(_lengths(one, n, two, m, ways)[:, None] * ways)
 
 
-def _axes(shape: Outlines, n: int) -> list[Numbers]:
-    """Return the normals of a core's edges (2,), those that are parallel once; a disc has none."""
+def _axes(shape: Outlines, n: int) -> Numbers:
+    """Return the normals of a core's edges (k, 2); a disc has none."""
     corners = shape.corners[n, : shape.vertices[n]]
-    ways = np.roll(corners, -1, axis=0) - corners
-    normals = np.stack((ways[:, 1], -ways[:, 0]), axis=1) if len(corners) > 1 else ways[:0]
-    found: list[Numbers] = []
-    for normal in normals / np.hypot(normals[:, 0], normals[:, 1])[:, None]:
-        if all(abs(normal[0] * other[1] - normal[1] * other[0]) > _PARALLEL for other in found):
-            found.append(normal)
-    return found
+    ways = np.concatenate((corners[1:], corners[:1])) - corners
+    ways = ways[: len(ways) if len(ways) > 1 else 0]
+    normals: Numbers = np.stack((ways[:, 1], -ways[:, 0]), axis=1) / np.hypot(*ways.T)[:, None]
+    return normals
 
 
-def _extent(shape: Outlines, n: int, axis: Numbers) -> float:
-    """Return how far a shape reaches from its middle along a direction [m]."""
-    return float((shape.corners[n] @ axis).max() + shape.radius[n])
+def _lengths(one: Outlines, n: int, two: Outlines, m: int, ways: Numbers) -> Numbers:
+    """Return how far ``two`` has to go in each of some directions (k, 2) to leave ``one`` (k,) [m]."""
+    reach = (one.corners[n] @ ways.T).max(axis=0) - (two.corners[m] @ ways.T).min(axis=0)
+    lengths: Numbers = reach + one.radius[n] + two.radius[m] - ways @ (two.place[m] - one.place[n])
+    return lengths
 
 
-def _nearest(shape: Outlines, n: int, place: Numbers) -> Numbers:
-    """Return the point of a core's edges that is nearest to a place (2,) [m]; of a disc its middle."""
-    corners = shape.place[n] + shape.corners[n]
-    edges = np.roll(corners, -1, axis=0) - corners
-    share = ((place - corners) * edges).sum(axis=1) / np.maximum((edges * edges).sum(axis=1), 1e-300)
-    points = corners + np.clip(share, 0.0, 1.0)[:, None] * edges
-    nearest: Numbers = points[np.argmin(np.hypot(*(points - place).T))]
+def _to_nearest(one: Outlines, n: int, two: Outlines, m: int) -> Numbers:
+    """Return the ways (k, 2) from the corners of a core to the nearest point of another's edges [m]."""
+    corners = two.place[m] + two.corners[m]
+    edges = np.concatenate((corners[1:], corners[:1])) - corners
+    offset = (one.place[n] + one.corners[n, : one.vertices[n]])[:, None] - corners
+    share = (offset * edges).sum(axis=2) / np.maximum((edges * edges).sum(axis=1), 1e-300)
+    ways = np.clip(share, 0.0, 1.0)[:, :, None] * edges - offset
+    nearest: Numbers = ways[np.arange(len(ways)), np.hypot(ways[:, :, 0], ways[:, :, 1]).argmin(axis=1)]
     return nearest

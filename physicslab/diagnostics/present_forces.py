@@ -72,5 +72,4 @@ def with_present_forces(world: World) -> World:
 def _bits(world: World) -> bytes:
     """Return all numbers of a world, its laws and the count of its changes."""
     told = world.physics, world.simulation, world.time, world.entity_index.changes
-    columns = (column.tobytes() for table in world.entity_index.tables.values() for column in table.columns)
-    return b"".join((repr(told).encode(), *columns))
+    return b"".join((repr(told).encode(), *world.entity_index.blocks()))

@@ -146,7 +146,7 @@ class RunRecorder:
                 kind = "none"
             body: dict[str, Any] = {"name": name, "kind": kind, "entity": entity}
             if shape.present[row]:
-                corners, vertices, radius = cores_of(shape, np.array([row]))
+                corners, vertices, radius, _ = cores_of(shape, np.array([row]))
                 body["core"] = corners[0, : vertices[0]].tolist()
                 body["radius"] = float(radius[0])
             if mass.present[row]:

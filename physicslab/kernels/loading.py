@@ -1,5 +1,6 @@
 """When kernels are compiled, or loaded from the cache: before they run, at the latest at their first call."""
 
+import functools
 import gc
 import itertools
 import secrets
@@ -107,6 +108,7 @@ def load(jitted: Any) -> None:
         return
     with _waiting():
         separate_symbols()
+        prepare()
         cache.note_use(jitted.py_func)
         jitted.compile(jitted.declared_signature)
         jitted.disable_compile()
@@ -152,8 +154,9 @@ def refuse_calls(jitted: Any) -> None:
     jitted._insert = lambda *_: None  # numba's table of what Python may call stays empty
 
 
+@functools.cache
 def prepare() -> None:
-    """Load numba's tables of types, as it does before the first kernel: 0.2 s and more.
+    """Load numba's tables of types, which the first kernel needs, once: 0.2 s and more.
 
     Where SciPy is installed numba imports its linear algebra, only to see whether matrix products could be
     compiled: half as long again, at every start. No kernel has any, so numba finds that there is none.

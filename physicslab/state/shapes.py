@@ -138,12 +138,15 @@ def sizes_in(table: Table) -> SizesTuple:
 class Cores(NamedTuple):
     """Rounded polygons: vertices (n, 8, 2) [m], the last one repeated; their numbers and radii (n,) [m].
 
+    And half of the extents of these cores (n, 2) [m].
+
     A chain goes there and back again, with as many vertices more as it needs.
     """
 
     corners: NDArray[np.float64]
     vertices: NDArray[np.int64]
     radius: NDArray[np.float64]
+    half: NDArray[np.float64]
 
 
 def _rows_in(table: Table, rows: NDArray[np.int64]) -> NDArray[np.int64]:
@@ -176,7 +179,7 @@ def cores_of(table: Table, rows: NDArray[np.int64]) -> Cores:
         which[chain] = np.maximum(last[chain] - np.abs(np.arange(most) - last[chain]), 0)
         vertices = np.where(chain, 2 * last[:, 0], vertices)
     corners = REGISTER.pool[first[:, None] + which, :2] * half[:, None, :]
-    return Cores(corners, vertices, radius)
+    return Cores(corners, vertices, radius, half)
 
 
 @lru_cache(maxsize=64)

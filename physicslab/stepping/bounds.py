@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from physicslab.components import Transform, Velocity
 from physicslab.contacts.islands import wake_neighbours
-from physicslab.contacts.outlines import Numbers, Outlines, exits, outlines_of, overlap, overlapping
+from physicslab.contacts.outlines import Numbers, Outlines, Rows, exits, outlines_of, overlap, overlapping
 from physicslab.kernels.accounts import OVERLAP
 from physicslab.kernels.near_counts import WEDGED
 from physicslab.kernels.solver.separate import BEYOND, DEEP, ROUNDING
@@ -56,27 +56,27 @@ def return_inside(state: State, schedule: Schedule) -> int:
     """
     noted, state.contacts.outside = state.contacts.outside, 0
     solid, velocity = solid_rows(state), state.table(Velocity)
-    fixed, movable = solid[~velocity.present[solid]], solid[state.bodies.inverse_mass[solid] > 0.0]
+    fixed = np.flatnonzero(~velocity.present[solid])
     if not len(fixed):
         return 0
     low, high = _room(state)
-    holding = fixed if noted & WEDGED else fixed[:0]
-    movable = movable[_may_be_kept(state, movable, holding)]
-    bodies, places = outlines_of(state, movable), dict[int, Numbers]()
+    bodies, places = outlines_of(state, solid), dict[int, Numbers]()
     beyond = _beyond(bodies, low, high) > BEYOND * bodies.size[:, None]
-    kept = beyond.any(axis=1)
-    if len(holding):
-        kept |= _may_be_within(bodies, outlines_of(state, holding))
-    for n in np.flatnonzero(kept).tolist():
-        near = fixed[_are_near(state, int(movable[n]), fixed)]
-        if len(near) and _is_kept(bodies, n, outlines_of(state, near), _INWARDS[beyond[n]]):
-            touched = fixed[may_touch(state, np.full(len(fixed), movable[n]), fixed)]
-            place = _free_place(bodies, n, outlines_of(state, touched), low, high)
+    kept = beyond.any(axis=1) & np.isin(solid, _pressed(state))
+    if noted & WEDGED:
+        kept[_may_be_within(state, bodies, solid, fixed)] = True
+    held = bodies.only(fixed)
+    for n in np.flatnonzero(kept & (state.bodies.inverse_mass[solid] > 0.0)).tolist():
+        touched = held
+        if is_any_apart(state):
+            touched = held.only(may_touch(state, np.full(len(fixed), solid[n]), solid[fixed]))
+        if _is_kept(bodies, n, touched, _INWARDS[beyond[n]]):
+            place = _free_place(bodies, n, touched, low, high)
             if place is not None:
                 places[n] = place
     if places:
         numbers = np.array(list(places))
-        _put(state, schedule, movable[numbers], np.array(list(places.values())), beyond[numbers])
+        _put(state, schedule, solid[numbers], np.array(list(places.values())), beyond[numbers])
     return len(places)
 
 
@@ -86,38 +86,35 @@ def _room(state: State) -> tuple[Numbers, Numbers]:
     return np.array(bounds[:2]), np.array(bounds[2:])
 
 
-def _may_be_kept(state: State, rows: NDArray[np.int64], fixed: NDArray[np.int64]) -> NDArray[np.bool_]:
-    """Return which bodies (n,) are pressed into the bounds, or may be in fixed ones (by circles)."""
+def _pressed(state: State) -> Rows:
+    """Return the rows (n,) of bodies that are pressed into the bounds, or beyond them."""
     contacts = state.contacts
     pairs = contacts.manifolds[: contacts.recorded]
     with_wall = np.flatnonzero((pairs["wall"] >= 0) & (pairs["count"] > 0))
     depth = -contacts.points["separation"].reshape(-1, 2)[with_wall].min(axis=1)
-    found = np.isin(rows, pairs["b"][with_wall[depth > _PRESSED * pairs["size"][with_wall]]])
-    for row in fixed.tolist():
-        found |= _are_near(state, row, rows)
-    return found
+    pressed: Rows = pairs["b"][with_wall[depth > _PRESSED * pairs["size"][with_wall]]]
+    return pressed
 
 
-def _are_near(state: State, row: int, rows: NDArray[np.int64]) -> NDArray[np.bool_]:
-    """Return which of some shapes (n,) may overlap and touch that of a row, by the circles around them."""
-    place, reach = state.table(Transform)["position"], state.bodies.shapes.reach
-    distance = np.abs(place[rows] - place[row])
-    near: NDArray[np.bool_] = (distance < (reach[rows] + reach[row])[:, None]).all(axis=1)
-    return near & may_touch(state, np.full(len(rows), row), rows) if is_any_apart(state) else near
+def _may_be_within(state: State, bodies: Outlines, solid: Rows, fixed: Rows) -> Rows:
+    """Return which bodies (n,) are in contact with fixed ones that they may be inside, by upright boxes."""
+    contacts = state.contacts
+    pairs = contacts.manifolds[: contacts.recorded]
+    pairs = pairs[(pairs["wall"] < 0) & (pairs["count"] > 0)]
+    numbers, is_fixed = np.full(len(state.entity_index), -1), np.zeros(len(solid), np.bool_)
+    numbers[solid], is_fixed[fixed] = np.arange(len(solid)), True
+    a, b = numbers[pairs["a"]], numbers[pairs["b"]]
+    n, m = np.concatenate((a, b)), np.concatenate((b, a))
+    n, m = n[is_fixed[m]], m[is_fixed[m]]
+    apart = np.abs(bodies.place[n] - bodies.place[m]) - bodies.reach[m]
+    within: Rows = n[(apart < bodies.reach[n] - _WITHIN * bodies.size[n, None]).all(axis=1)]
+    return within
 
 
 def _beyond(bodies: Outlines, low: Numbers, high: Numbers) -> Numbers:
     """Return how far each body is beyond each of the walls (n, 4) [m]."""
     reach = bodies.reach
     return np.concatenate((low - bodies.place + reach, bodies.place + reach - high), axis=1)
-
-
-def _may_be_within(bodies: Outlines, fixed: Outlines) -> NDArray[np.bool_]:
-    """Return which bodies (n,) may be inside a fixed one, by their boxes along the axes of the world."""
-    reach, within = bodies.reach - _WITHIN * bodies.size[:, None], np.zeros(len(bodies.size), np.bool_)
-    for place, far in zip(fixed.place, fixed.reach, strict=True):
-        within |= (np.abs(bodies.place - place) < reach + far).all(axis=1)
-    return within
 
 
 def _is_kept(bodies: Outlines, n: int, fixed: Outlines, inwards: Numbers) -> bool:
@@ -142,7 +139,7 @@ def _free_place(
     low, high = low + reach, high - reach
     if (high < low).any():
         return None  # it is larger than the world
-    own = bodies.only(n)
+    own = bodies.only(np.array([n]))
 
     def hits(place: Numbers) -> list[int]:
         own.place[0] = place
@@ -174,9 +171,7 @@ def _free_place(
     return None if free is None else grid[free].copy()
 
 
-def _put(
-    state: State, schedule: Schedule, rows: NDArray[np.int64], places: Numbers, beyond: NDArray[np.bool_]
-) -> None:
+def _put(state: State, schedule: Schedule, rows: Rows, places: Numbers, beyond: NDArray[np.bool_]) -> None:
     """Put bodies elsewhere, without the velocity that led outwards, and note what energy that brought."""
     position, linear = state.table(Transform)["position"], state.table(Velocity)["linear"]
     before = balance_of(state, schedule.forces)
