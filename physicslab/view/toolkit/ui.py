@@ -296,7 +296,7 @@ class Ui(Words):
 
 
 def _write_beside_handle(words: str, share: float) -> None:
-    """Write words into the middle of the slider drawn last; where its handle is in the way, on its free side."""
+    """Write words into the middle of the slider drawn last, or beside its handle where that is in the way."""
     (left, top), (right, bottom) = imgui.get_item_rect_min(), imgui.get_item_rect_max()
     style, size = imgui.get_style(), imgui.calc_text_size(words)
     reach = 0.5 * style.grab_min_size + style.item_inner_spacing.x
