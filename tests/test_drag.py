@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 
 from physicslab.components import Drag, Mass, Shape, Transform, Velocity
 from physicslab.diagnostics.energy import measure_energy
+from physicslab.diagnostics.warnings import find_warnings
 from physicslab.ecs.component import InvalidValue
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.systems.drag import DragSystem
@@ -48,6 +49,18 @@ def test_quadratic_drag_against_the_closed_form() -> None:
     assert world.plan.integrator.name == "dop853"
     assert world.component(ball, Transform).position.y == pytest.approx(-13.06611417826422700240, rel=1e-13)
     assert world.component(ball, Velocity).linear.y == pytest.approx(-9.534645904705057135767, rel=1e-13)
+
+
+def test_drag_of_zero_costs_no_order_and_an_edit_brings_that_back() -> None:
+    world, ball = thrown(Drag(), 1.0, (10, 15), "leapfrog")
+    world.component(ball, Drag).linear = world.component(ball, Drag).quadratic = 0.0
+    assert find_warnings(world) == ()
+    world.step()
+    world.component(ball, Drag).linear = 0.5
+    world.step()
+    assert [warning.what for warning in find_warnings(world)] == [
+        "Drag: leapfrog has order 1 where a force depends on velocities"
+    ]
 
 
 @pytest.mark.parametrize("name", ["leapfrog", "rk4", "implicit_midpoint", "dop853"])

@@ -15,6 +15,7 @@ from physicslab.components import (
     Gear,
     MadeOf,
     Mass,
+    Material,
     Pin,
     Pulley,
     Rod,
@@ -532,6 +533,20 @@ def test_a_ramp_has_the_length_and_the_angle_of_its_slope(desk: Desk) -> None:
     width, height = np.ptp(np.array([tuple(vertex) for vertex in shape.vertices]), axis=0)
     assert (width, height) == pytest.approx((2 * math.cos(math.pi / 9), 2 * math.sin(math.pi / 9)))
     assert not len(desk.world.batch(Velocity))
+    assert only(desk.world, Material).restitution == desk.window.recipe.restitution > 0.0
+
+
+def test_a_box_takes_an_angle_beside_its_sides(desk: Desk) -> None:
+    draw(desk, "ramp", (0.0, 0.0), (1.0, 0.2), "3 m, 20 deg")
+    slope = only(desk.world, Transform).position
+    draw(desk, "box", (slope.x, slope.y + 0.9), (slope.x + 0.3, slope.y + 1.1), "0.4 m, 0.2 m, 20 deg, 500 g")
+    box = desk.world.batch(Mass).entities.tolist()[0]
+    shape = desk.world.component(box, Shape)
+    assert (shape.width, shape.height, desk.world.component(box, Mass).mass) == (0.4, 0.2, 0.5)
+    assert desk.world.component(box, Transform).angle == pytest.approx(math.pi / 9)
+    draw(desk, "box", (-4.0, 2.0), (-3.0, 2.5))
+    *_, last = desk.world.batch(Mass).entities.tolist()
+    assert desk.world.component(last, Transform).angle == 0.0
 
 
 def test_what_is_drawn_holds_and_nothing_that_was_not_given_is_set() -> None:

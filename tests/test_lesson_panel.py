@@ -19,6 +19,7 @@ from physicslab.files.scene import load_scene
 from physicslab.lessons.answers import grade, read_answers
 from physicslab.lessons.catalogue import find_lesson
 from physicslab.lessons.lesson import Lesson, Run
+from physicslab.lessons.live_run import record_run
 from physicslab.prefabs import circle
 from physicslab.view.controls.controls import CONTROLS
 from physicslab.view.controls.lesson_actions import choose_language, open_lesson
@@ -317,6 +318,20 @@ def test_the_hand_leaves_a_measurement_alone(desk: Desk) -> None:
     desk.press(ball.x, ball.y)
     desk.frames(1)
     assert desk.window.hand.entity is not None, "free again after it"
+
+
+def test_a_run_has_the_steps_of_a_check_at_any_speed(desk: Desk, tmp_path: Path) -> None:
+    (tmp_path / "fall.md").write_text(FALL.replace("seconds: 0.1 s", "seconds: 0.107 s"))
+    lesson = predicted(desk)
+    click(desk, "Run fall")
+    desk.window.pace.slow_motion = True  # its shorter steps would have another error
+    while lesson.running:
+        desk.frames()
+    fall = next(part for part in lesson.lesson.parts() if isinstance(part, Run))
+    checked = record_run(lesson.lesson.setup, fall, lesson.lesson.quantities)
+    assert lesson.trial is not None and lesson.trial.ended
+    assert lesson.trial.live.record.times == pytest.approx(checked.record.times, rel=1e-12)
+    assert lesson.trial.live.world.time == pytest.approx(0.107, rel=1e-12)
 
 
 def test_a_curve_is_drawn_with_the_mouse(desk: Desk) -> None:

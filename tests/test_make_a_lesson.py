@@ -13,7 +13,8 @@ from physicslab.components import Velocity
 from physicslab.files.scene import load_scene
 from physicslab.languages.language import language
 from physicslab.lessons.check import check_lesson
-from physicslab.lessons.lesson import Explain
+from physicslab.lessons.lesson import Explain, Run
+from physicslab.lessons.live_run import LiveRun
 from physicslab.lessons.reader import parse_lesson, read_lesson
 from physicslab.lessons.writer import FORMS, Draft, Opened, identifier, lesson_text, name_bodies
 from physicslab.prefabs import circle
@@ -177,3 +178,15 @@ def test_a_file_that_is_there_is_kept_until_the_user_says_so(desk: Desk, tmp_pat
     assert (tmp_path / "drop-1.md").read_text() == "mine"
     click(desk, "Replace it")
     assert desk.window.lesson is not None and read_lesson(tmp_path / "drop-1.md").minutes == 20
+
+
+def test_a_lesson_of_a_scene_that_has_run_begins_at_zero() -> None:
+    world = load_scene("drop")
+    world.run(seconds=0.25)
+    lesson = parse_lesson(lesson_text(name_bodies(world), drop(measured="time", unit="s")), "scene.md")
+    run = next(part for part in lesson.parts() if isinstance(part, Run))
+    live = LiveRun(lesson.setup, run, lesson.quantities)
+    live.world.step()
+    while not live.sample():
+        live.world.step(live.next_step)
+    assert live.record.times[0] == 0.0 and live.world.time == pytest.approx(0.5, rel=1e-12)

@@ -39,7 +39,8 @@ class Installed:
         self.folder, environment = folder, folder / "env"
         uv("venv", "--quiet", "--python", sys.executable, environment)
         uv("pip", "install", "--quiet", "--python", environment, f"physicslab{extra} @ {wheel.as_uri()}")
-        self.command = str(environment / ("Scripts" if os.name == "nt" else "bin") / "physicslab")
+        self._programs = environment / ("Scripts" if os.name == "nt" else "bin")
+        self.command = str(self._programs / "physicslab")
 
     def packages(self) -> set[str]:
         """Return the names of what is installed."""
@@ -48,9 +49,14 @@ class Installed:
 
     def run(self, *arguments: str) -> subprocess.CompletedProcess[str]:
         """Run the installed command."""
-        return subprocess.run(
-            [self.command, *arguments], cwd=self.folder, capture_output=True, text=True, check=False
-        )
+        return self._run(self.command, *arguments)
+
+    def python(self, code: str) -> subprocess.CompletedProcess[str]:
+        """Run a program with what is installed."""
+        return self._run(str(self._programs / "python"), "-c", code)
+
+    def _run(self, *command: str) -> subprocess.CompletedProcess[str]:
+        return subprocess.run(command, cwd=self.folder, capture_output=True, text=True, check=False)
 
 
 @pytest.fixture(scope="module")
@@ -77,16 +83,18 @@ def test_the_base_runs_and_exports_without_the_window(wheel: Path, tmp_path: Pat
     done = installed.run("export", "drop", "--seconds", "0.5", "--html", "drop.html")
     assert done.returncode == 0 and (installed.folder / "drop.html").stat().st_size > 10_000, done.stderr
     assert "two_planets" in installed.run("scenes").stdout
-    for user, *arguments in (
-        ("--png", "run", "drop", "--png", "drop.png"),
-        ("--gif", "export", "drop", "--gif", "drop.gif"),
-        ("the window",),
-        ("circles_10_window", "bench", "circles_10_window"),
-        ("--open", "sweep", "drop", "--vary", "ball.Mass.mass=1:2:2", "--open", "1"),
-    ):
-        done = installed.run(*arguments)
-        wanted = "needs the package pygame, which is not installed: pip install 'physicslab[window]'"
-        assert (done.returncode, done.stdout, done.stderr) == (2, "", f"physicslab: {user}: {wanted}\n")
+    lines = {
+        "--png": ["run", "drop", "--png", "drop.png"],
+        "--gif": ["export", "drop", "--gif", "drop.gif"],
+        "the window": [],
+        "circles_10_window": ["bench", "circles_10_window"],
+        "--open": ["sweep", "drop", "--vary", "ball.Mass.mass=1:2:2", "--open", "1"],
+    }
+    program = "from physicslab.cli import main; print([main(line) for line in {}])"
+    done = installed.python(program.format([*lines.values()]))
+    wanted = "needs the package pygame, which is not installed: pip install 'physicslab[window]'"
+    assert done.stdout == f"{[2] * len(lines)}\n"
+    assert done.stderr == "".join(f"physicslab: {user}: {wanted}\n" for user in lines)
     assert not list(installed.folder.glob("drop.[pg]*"))
 
 

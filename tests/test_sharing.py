@@ -8,6 +8,7 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
+import pygame
 import pytest
 from desk import SETTLED, Desk, bits, click, fill, tap
 
@@ -19,7 +20,7 @@ from physicslab.history import AddComponent, SetField, Spawn
 from physicslab.history.commands import SetText
 from physicslab.view.controls import share_actions
 from physicslab.view.controls.lesson_actions import open_lesson
-from physicslab.view.window.sharing import FROM_START, WHOLE_LESSON, Sharing
+from physicslab.view.window.sharing import FROM_EDIT, FROM_START, WHOLE_LESSON, Sharing
 
 # Takes the place of the command: writes what it is given, or waits for ever, or fails.
 _WRITES = """
@@ -113,6 +114,26 @@ def test_without_a_lesson_a_page_has_a_run(desk: Desk) -> None:
     desk.window.sharing.begins = WHOLE_LESSON
     tap(desk, "f8")
     assert desk.window.sharing.begins == FROM_START and "Seconds of the page" in desk.ui.places
+
+
+def test_what_was_built_after_the_start_is_in_a_page_and_there_after_a_restart(desk: Desk) -> None:
+    desk.window.scenes.source = None
+    history = desk.window.edits.history
+    history.step(steps=20)
+    desk.window.edits.do(Spawn([Transform((1.0, 2.0)), Velocity(), Mass(1.0)], name="late"))
+    history.step(steps=10)
+    desk.window.edits.do(Spawn([Note("seen")]))  # moves nothing
+    tap(desk, "f8")
+    assert desk.window.sharing.begins == FROM_EDIT
+    with share_actions.gone_back(desk.window, FROM_EDIT):
+        assert history.step_count == 20 and desk.world.entity("late")
+    assert history.step_count == 30
+    tap(desk, "escape")
+    steps = []
+    for _ in range(2):
+        tap(desk, "r", pygame.KMOD_LCTRL)
+        steps.append(history.step_count)
+    assert steps == [20, 0]
 
 
 def test_esc_gives_a_page_up_and_leaves_nothing(desk: Desk, tmp_path: Path) -> None:
@@ -217,6 +238,7 @@ def test_a_page_from_the_start_has_the_texts_and_instruments_that_were_added_sin
     desk.frames(SETTLED)
     before, count = bits(world), len(world.entities())
     tap(desk, "f8")
+    desk.window.sharing.begins = FROM_START
     tap(desk, "return")
     begun = load_scene(scene)
     assert (begun.title, begun.time, len(begun.batch(Transform))) == ("Two bounces", 0.0, bodies)

@@ -547,6 +547,9 @@ def test_an_error_smaller_than_two_rims_is_no_warning_to_a_pupil() -> None:
         advice = [ModelWarning(None, "contacts are soft", off, "m", 0.0, "")]
         rect = draw_advice(advice, (100, 50, 600, 500), on, plainly=True, seen_only=seen_only)
         assert (rect is not None) is drawn
+    steps = [ModelWarning(None, "steps were left to soft contacts", 4.0, "", 0.0, "")]
+    assert draw_advice(steps, (100, 50, 600, 500), on, plainly=True, seen_only=True) is None
+    assert draw_advice(steps, (100, 50, 600, 500), on, plainly=True) is not None
     beyond = [ModelWarning(None, "a joint gives way", 1e-4, "m", 1e-5, "")]
     assert draw_advice(beyond, (100, 50, 600, 500), on, seen_only=True) is not None
 

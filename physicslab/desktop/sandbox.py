@@ -151,6 +151,8 @@ class Sandbox:
 
         While nothing in it moves it is drawn a few times a second; return whether it was.
         """
+        lesson = self.window.lesson
+        self.window.pace.measured = lesson is not None and lesson.running
         self.window.pace.begin(elapsed)
         if self.window.scenes.next_world is None:
             self._source = self.window.scenes.source  # another, once the scene was saved under another name
@@ -271,7 +273,7 @@ class Sandbox:
         try:
             while made < due and (made == 0 or self._clock() < deadline):
                 logged, before = self.world.contacts.logged, self.world.time
-                self._step(dt * pace.shortening)
+                self._step(self._next_step(dt))
                 made += 1
                 if made < due and self.window.dashboard.graphs:
                     self.window.dashboard.follow(self.world, self.history)  # the last of them is the frame's
@@ -298,6 +300,13 @@ class Sandbox:
     def _worked(self) -> float:
         """Return how long this process has computed without compiling [s], from some time on."""
         return time.thread_time() - self.world.compile_s
+
+    def _next_step(self, dt: float) -> float:
+        """Return the length of a step [s]: a lesson's run ends when it says, at any speed."""
+        lesson = self.window.lesson
+        if lesson is not None and lesson.trial is not None and lesson.running:
+            return lesson.trial.live.next_step
+        return dt * self.window.pace.shortening
 
     def _step(self, dt: float) -> None:
         """Make a step; in the past the one that was made there once."""

@@ -303,3 +303,17 @@ def shown_value(value: Any) -> str:
 
 def _takes_an(noun: str) -> bool:
     return noun[:1].lower() in "aeiou"
+
+
+def changes_motion(command: Command) -> bool:
+    """Whether an edit is of what moves: not of instruments, names, colours and texts alone."""
+    match command:
+        case Group():
+            return any(map(changes_motion, command.commands))
+        case Spawn():
+            return any(part.physical for part in command.components)
+        case SetField() | RemoveComponent():
+            return getattr(COMPONENTS.get(command.component), "physical", False)
+        case AddComponent():
+            return getattr(type(command.component), "physical", False)
+    return not isinstance(command, SetText)

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Self
 
 from physicslab.history.branches import Branch, Branches
-from physicslab.history.commands import Command, Group, Spawn
+from physicslab.history.commands import Command, Group, Spawn, changes_motion
 from physicslab.history.line import Edit, Run, Steps, run_in_words
 from physicslab.history.places import Places
 from physicslab.history.recording import load, save
@@ -271,6 +271,16 @@ class History:
     def step_count(self) -> int:
         """How many steps of the line lie before the present place."""
         return self._places.line.steps_before(self._places.here)
+
+    @property
+    def last_edit(self) -> int:
+        """How many steps lie before the last edit of what moves, before the present place; 0 without one."""
+        line = self._places.line
+        for k in reversed(range(self.position)):
+            entry = line.entries[k]
+            if isinstance(entry, Edit) and changes_motion(entry.command):
+                return line.steps_before(line.start_of(k))
+        return 0
 
     @property
     def steps_range(self) -> tuple[int, int]:

@@ -7,6 +7,7 @@ from physicslab.diagnostics.samples import Record
 from physicslab.files.checks import SceneError
 from physicslab.lessons.lesson import Run
 from physicslab.lessons.setup import AS_IT_IS, Case, Setup
+from physicslab.stepping.run import run_length
 from physicslab.world import World
 
 MOST_STEPS = 1_000_000
@@ -38,6 +39,14 @@ class LiveRun:
         self._until, self._after = run.until, 0
         self.limit = (run.seconds or run.limit).value(self._parameters).value
         refuse_long(self.limit, self.world)
+        self._length = None if run.until else run_length(self.world, self.limit, None)
+
+    @property
+    def next_step(self) -> float:
+        """Length of the step that comes next [s]: with the last one a run is exactly as long as it says."""
+        length = self._length
+        is_rest = length is not None and len(self.record.times) > length.whole
+        return length.rest if length is not None and is_rest else self.world.simulation.dt
 
     @property
     def figures(self) -> Figures:

@@ -125,7 +125,9 @@ class Setup:
                         values[spec.name] = _number(spec, values[spec.name], scope)
                     except InvalidText as error:
                         raise SceneError(f"{self.source}: {where}.{spec.name}: {error}") from error
-        return read_scene(document, self.source)
+        world = read_scene(document, self.source)
+        world.time = 0.0  # runs begin there, whenever the scene was saved
+        return world
 
     def _set(self, document: dict[str, Any], path: str, text: str) -> None:
         """Put a text in the place of a field; a component that the entity does not have is added."""

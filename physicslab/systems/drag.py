@@ -51,5 +51,6 @@ class DragSystem(ForceSystem):
         return rates
 
     def depends_on_velocity(self, state: State) -> bool:
-        """Drag is nothing else."""
-        return True
+        """Whether any drag is more than zero: it is nothing else."""
+        table, rows = state.table(Drag), state.batch(*self.needs).rows
+        return bool((table["linear"][rows] > 0.0).any() or (table["quadratic"][rows] > 0.0).any())

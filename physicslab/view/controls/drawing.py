@@ -23,6 +23,7 @@ from physicslab.view.controls.drawn import (
 from physicslab.view.controls.polygons import MOST, is_stroke, simplified
 from physicslab.view.controls.pouring import pour
 from physicslab.view.controls.preview import built, number_of_discs, outlines_through, put_in_place
+from physicslab.view.window.edits import Recipe
 from physicslab.view.window.ends import brought
 from physicslab.view.window.placing import refused_place, snapped_point
 from physicslab.view.window.sketch import Grip
@@ -154,10 +155,11 @@ def _build(
     """
     if not places:
         return False
+    recipe = window.recipe.given(given)
     try:
-        places = places if checked else put_in_place(world, drawn, places, window)
-        refused = "" if checked else refused_place(world, outlines_through(drawn, places, window.recipe))
-        made = [] if refused else _commands(drawn, places, window, given)
+        places = places if checked else put_in_place(world, drawn, places, window, recipe)
+        refused = "" if checked else refused_place(world, outlines_through(drawn, places, recipe))
+        made = [] if refused else _commands(drawn, places, window, recipe, given)
     except InvalidValue as error:
         refused = f"{error.field} must be {error.allowed}"
     except ValueError as error:  # no outline
@@ -177,10 +179,10 @@ def _build(
 
 
 def _commands(
-    drawn: Drawn, places: Sequence[Vector2], window: Window, given: Mapping[str, float]
+    drawn: Drawn, places: Sequence[Vector2], window: Window, recipe: Recipe, given: Mapping[str, float]
 ) -> list[Command]:
     """Return the commands that make bodies through points, of a mass [kg] and a speed to the right [m/s]."""
-    scratch, first = built(drawn, places, window.recipe), window.edits.history.next_entity
+    scratch, first = built(drawn, places, recipe), window.edits.history.next_entity
     entities, parts_of_one = scratch.entities(), scratch.batch(Shape).entities.tolist()
     if drawn.is_open and len(parts_of_one) > 1 and not scratch.has(parts_of_one[0], Colour):
         colour = Colour("#" + bytes(window.theme.body(first)).hex())

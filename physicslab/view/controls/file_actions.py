@@ -91,11 +91,17 @@ def open_from_list(world: World, window: Window, source: str | Path) -> None:
 
 
 def restart(world: World, window: Window) -> None:
-    """Open the scene that is shown once more, as at its start; one without a file goes back to its start."""
+    """Open the scene that is shown once more, as at its start.
+
+    One without a file goes back to its last edit, and from there to its start.
+    """
     if window.scenes.source is None:
         window.pause_for_history(world)
-        window.edits.history.seek(0)
-        window.notify("Back at the start")
+        history = window.edits.history
+        begin = history.last_edit if history.last_edit < history.step_count else 0
+        history.seek(begin)
+        told = "Back at the last edit: once more leads to the start"
+        window.notify(told if begin else "Back at the start")
         return
     if not open_scene(window, window.scenes.source):
         window.scenes.starts_again = True

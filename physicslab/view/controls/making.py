@@ -25,7 +25,7 @@ from physicslab.state.masses import Diverged
 from physicslab.view.canvas.quantities import quantity, written_unit
 from physicslab.view.controls.lesson_actions import open_lesson
 from physicslab.view.controls.saving import name_of
-from physicslab.view.controls.share_actions import gone_back, span_around
+from physicslab.view.controls.share_actions import gone_back, span_around, usual_beginning
 from physicslab.view.window.making import Making
 from physicslab.view.window.naming import Naming, free_name, new_paths
 from physicslab.view.window.window import Window
@@ -50,6 +50,7 @@ def toggle_making(world: World, window: Window) -> None:
     if making.choosing:
         stem = file_stem(name_of(world, window))
         making.naming = Naming(free_name(new_paths(Path.cwd(), stem, ".md")))
+        making.begins = usual_beginning(window, making.begins)
         if making.quantity not in measurable(world):
             own = language(window.language)
             title = own.reword(world.title or "What happens?")
@@ -81,7 +82,7 @@ def choose_measured(making: Making, name: str, reading: str) -> None:
     long = columns(None if body == "world" else 1)[short]
     last = reading == next(iter(READINGS))
     own = language(draft.language)
-    draft.quantity = f"{body}: {own.reword(long)}"
+    draft.quantity = own.reword(long) if body == "world" else f"{own.reword(long)} ({body})"
     if not last:
         draft.quantity = f"{draft.quantity}, {own.reword(reading)}"
     if draft.question in ("", before):

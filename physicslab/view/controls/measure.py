@@ -35,6 +35,8 @@ class Measure(NamedTuple):
         Returns the numbers in words.
     rounded : callable
         Returns the way to draw in place of one, while Shift is held.
+    beside : tuple of str
+        The units of what can be typed beside these numbers.
     """
 
     units: tuple[str, ...]
@@ -42,6 +44,7 @@ class Measure(NamedTuple):
     way: Callable[[Sequence[float], Vector2], Vector2]
     words: Callable[..., str]
     rounded: Callable[[Vector2], Vector2]
+    beside: tuple[str, ...] = _OF_BODY
 
     def written(self, text: str, way: Vector2) -> Vector2:
         """Return the way by typed numbers; those that are not typed are the cursor's.
@@ -67,8 +70,8 @@ class Measure(NamedTuple):
         return self.way(numbers, way)
 
     def sizes(self, text: str) -> list[str]:
-        """Return the texts between separators but for a mass, a speed, and empty ones at the end."""
-        parts = [part for part in _BETWEEN.split(text) if _of_body(part, self.units) is None]
+        """Return the texts between separators but for what is no size, and empty ones at the end."""
+        parts = [part for part in _BETWEEN.split(text) if _of_body(part, self.units, self.beside) is None]
         while parts and not parts[-1].strip():
             del parts[-1]
         return parts
@@ -98,8 +101,8 @@ class Measure(NamedTuple):
         return ""
 
     def given(self, text: str) -> dict[str, float]:
-        """Return the mass [kg] and the speed [m/s] among typed numbers, which are no size by their units."""
-        found = (_of_body(part, self.units) for part in _BETWEEN.split(text.strip()))
+        """Return the mass [kg], speed [m/s] and angle [deg] among typed numbers: no sizes, by their units."""
+        found = (_of_body(part, self.units, self.beside) for part in _BETWEEN.split(text.strip()))
         return dict(one for one in found if one is not None)
 
     def said(self, way: Vector2) -> str:
@@ -130,9 +133,9 @@ def motion_of(text: str) -> dict[str, float]:
     return found
 
 
-def _of_body(text: str, units: Sequence[str]) -> tuple[str, float] | None:
+def _of_body(text: str, units: Sequence[str], beside: Sequence[str]) -> tuple[str, float] | None:
     """Return the property that a number is of by its unit; ``None`` for a size, or one half written."""
-    for unit in (*units, *_OF_BODY):
+    for unit in (*units, *beside):
         with contextlib.suppress(InvalidText):
             value = evaluate(text, unit)
             return None if unit in units else (unit, value)
@@ -184,8 +187,9 @@ CORNERS = Measure(
     _sides,
     lambda width, height: f"{_metres(width)} × {_metres(height)}",
     _square,
+    (*_OF_BODY, "deg"),
 )
-"""From corner to corner."""
+"""From corner to corner; an angle turns what is between them."""
 
 BRICK, DOMINO_SPACING = (0.4, 0.2), 0.25
 """Width and height of a brick, and the distance of dominoes [m]."""

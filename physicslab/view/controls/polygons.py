@@ -92,4 +92,5 @@ def build_ramp(world: World, places: Places, recipe: Recipe) -> None:
     if len(corners) < 3:
         raise ValueError("it needs a slope that is neither level nor upright")
     shape = Shape.polygon(corners)
-    body(world, shape, corners[0] - shape.vertices[0], static=True, friction=recipe.friction)
+    body(world, shape, corners[0] - shape.vertices[0], static=True,
+         restitution=recipe.restitution, friction=recipe.friction)  # fmt: skip

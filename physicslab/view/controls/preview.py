@@ -37,11 +37,13 @@ def built(drawn: Drawn, places: Sequence[Vector2], recipe: Recipe) -> World:
     return scratch
 
 
-def put_in_place(world: World, drawn: Drawn, places: Sequence[Vector2], window: Window) -> Sequence[Vector2]:
+def put_in_place(
+    world: World, drawn: Drawn, places: Sequence[Vector2], window: Window, recipe: Recipe
+) -> Sequence[Vector2]:
     """Return points [m] so that what is made of them stands, or lies beside what it was drawn against."""
     if drawn.stands:
         places = put_down(world, places, each=drawn.measure is DOMINOES)
-    aside = way_aside(world, window.camera, outlines_through(drawn, places, window.recipe))
+    aside = way_aside(world, window.camera, outlines_through(drawn, places, recipe))
     return [place + aside for place in places] if aside else places
 
 
@@ -86,8 +88,9 @@ def ghost(world: World, drawn: Drawn, window: Window) -> tuple[Outlines, bool] |
             places = clicked(drawn, window, sketch.spot)
     else:
         places = clicked(drawn, window, window.target)
+    recipe = window.recipe.given(drawn.measure.given(sketch.typed) if sketch.name == drawn.name else {})
     try:
-        outlines = outlines_through(drawn, put_in_place(world, drawn, places, window), window.recipe)
+        outlines = outlines_through(drawn, put_in_place(world, drawn, places, window, recipe), recipe)
     except ValueError:  # larger than anything may be, or not a shape yet
         return None
     return outlines, not refused_place(world, outlines)

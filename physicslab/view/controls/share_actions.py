@@ -17,7 +17,15 @@ from physicslab.files.scene import SceneError, file_stem, save_scene
 from physicslab.stepping.keyframe import Keyframe
 from physicslab.view.controls.saving import name_of
 from physicslab.view.window.naming import Naming, free_name, new_paths
-from physicslab.view.window.sharing import FROM_START, WHOLE_LESSON, Sharing, Slid
+from physicslab.view.window.sharing import (
+    FROM_EDIT,
+    FROM_NOW,
+    FROM_START,
+    WHOLE_LESSON,
+    Sharing,
+    Slid,
+    beginnings,
+)
 from physicslab.view.window.window import Window
 from physicslab.world import World
 
@@ -41,10 +49,14 @@ def toggle_sharing(world: World, window: Window) -> None:
     if sharing.choosing:
         lesson = None if window.lesson is None else window.lesson.lesson
         stem = file_stem(name_of(world, window) if lesson is None else lesson.name)
-        begins = FROM_START if sharing.begins == WHOLE_LESSON else sharing.begins
-        sharing.begins = begins if lesson is None else WHOLE_LESSON
+        sharing.begins = usual_beginning(window, sharing.begins) if lesson is None else WHOLE_LESSON
         sharing.naming = Naming(free_name(new_paths(Path.cwd(), stem, ".html")))
         _take_sliders(world, window)
+
+
+def usual_beginning(window: Window, chosen: str) -> str:
+    """Return where to begin: what was built while time ran or stood is not there at the start."""
+    return chosen if chosen == FROM_NOW else beginnings(window.edits.history.last_edit)[0]
 
 
 def _take_sliders(world: World, window: Window) -> None:
@@ -165,12 +177,13 @@ def begin_sharing(world: World, window: Window, over: Path | None = None) -> Non
 
 @contextmanager
 def gone_back(window: Window, begins: str) -> Iterator[None]:
-    """Show the scene as it was at its start, if it is to begin there, and then as it is now again."""
+    """Show the scene as it was where it is to begin, and then as it is now again."""
     history = window.edits.history
     here = history.step_count
-    moved = begins == FROM_START and here > 0
+    begin = {FROM_START: 0, FROM_EDIT: history.last_edit}.get(begins, here)
+    moved = begin < here
     if moved:
-        history.seek(0)
+        history.seek(begin)
     try:
         yield
     finally:

@@ -49,7 +49,9 @@ def _circle(world: World, places: Places, recipe: Recipe) -> None:
 def _box(world: World, places: Places, recipe: Recipe) -> None:
     way = places[1] - places[0]
     width, height = _size(abs(way.x)), _size(abs(way.y))
-    prefabs.box(world, places[0] + way * 0.5, width=width, height=height, **recipe.body(width * height))
+    options = recipe.body(width * height)
+    options["angle"] = recipe.angle
+    prefabs.box(world, places[0] + way * 0.5, width=width, height=height, **options)
 
 
 def _capsule(world: World, places: Places, recipe: Recipe) -> None:

@@ -1,5 +1,6 @@
 """Short words in boxes over the world: banners and warnings at the top, messages at the bottom."""
 
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
@@ -189,14 +190,14 @@ def draw_advice(
     """Write what is not to be trusted, in the middle at the top of a room [px]; return where [px].
 
     The worst comes first, and ``plainly`` alone; what is beyond a limit comes before what has none. With
-    ``seen_only`` errors of places without a limit that cannot be seen in the picture are left out. Without a
-    warning, or room for it, nothing is drawn.
+    ``seen_only`` errors of places that cannot be seen in the picture, and counts of steps and impacts, are
+    left out where they have no limit. Without a warning, or room for it, nothing is drawn.
     """
     if seen_only:
         scale = on.camera.scale
-        advice = [
-            one for one in advice if one.limit != 0.0 or one.unit != "m" or one.excess[1] * scale >= _SEEN
-        ]
+        least = {"m": _SEEN / scale, "": math.inf}  # places that are off are seen, numbers of steps are not
+        shown = (one.excess[1] >= least.get(one.unit, -math.inf) for one in advice)
+        advice = [one for one, is_shown in zip(advice, shown, strict=True) if is_shown or one.limit != 0.0]
     if not advice:
         return None
     ordered = sorted(advice, key=lambda one: (bool(one.limit), one.excess), reverse=True)

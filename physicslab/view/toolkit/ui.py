@@ -222,10 +222,10 @@ class Ui(Words):
         shown = self.written(shown)
         imgui.set_next_item_width(width)
         flags = imgui.SliderFlags_.no_input  # Ctrl-click would make a field of it, without units
-        words = shown.replace("%", "%%")
         room = 0.5 * high - 0.5 * low
         share = min(max((0.5 * value - 0.5 * low) / room, 0.0), 1.0) if room > 0.0 else 0.0
-        moved, new = imgui.slider_float(self.held(label), share, 0.0, 1.0, words, flags)
+        moved, new = imgui.slider_float(self.held(label), share, 0.0, 1.0, "", flags)
+        _write_beside_handle(shown, new)
         self.note(label, "slider", shown)
         return low * (1.0 - new) + high * new if moved else None
 
@@ -293,3 +293,19 @@ class Ui(Words):
         beyond = 0.15 * self.size
         ends = ImVec2(x - 0.5, top - beyond), ImVec2(x + 0.5, top + height + beyond)
         imgui.get_window_draw_list().add_rect_filled(*ends, packed(self.theme.text))
+
+
+def _write_beside_handle(words: str, share: float) -> None:
+    """Write words into the middle of the slider drawn last, or beside its handle where that is in the way."""
+    (left, top), (right, bottom) = imgui.get_item_rect_min(), imgui.get_item_rect_max()
+    style, size = imgui.get_style(), imgui.calc_text_size(words)
+    reach = 0.5 * style.grab_min_size + style.item_inner_spacing.x
+    handle = left + reach + share * (right - left - 2.0 * reach)
+    x = 0.5 * (left + right - size.x)
+    if x - reach < handle < x + size.x + reach:
+        beside = handle + reach if handle < 0.5 * (left + right) else handle - reach - size.x
+        x = min(max(beside, left), max(right - size.x, left))
+    place = ImVec2(x, 0.5 * (top + bottom - size.y))
+    imgui.push_clip_rect(ImVec2(left, top), ImVec2(right, bottom), True)
+    imgui.get_window_draw_list().add_text(place, imgui.get_color_u32(imgui.Col_.text), words)
+    imgui.pop_clip_rect()

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import math
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
@@ -220,6 +221,8 @@ class Recipe:
         Coefficients of its surface.
     material, colour : str
         Its material, if that has a name, and its colour, as "#rrggbb".
+    angle : float
+        How far a box is turned [rad]: it is typed while one is drawn, and not kept.
     """
 
     size: float = 0.0
@@ -228,6 +231,7 @@ class Recipe:
     friction: float = 0.5
     material: str = ""
     colour: str = ""
+    angle: float = 0.0
 
     @property
     def grain(self) -> float:
@@ -243,6 +247,10 @@ class Recipe:
             self, density=known.areal_density, restitution=known.restitution, friction=known.friction,
             material=material, colour=known.colour,
         )  # fmt: skip
+
+    def given(self, typed: Mapping[str, float]) -> Recipe:
+        """Return the same with an angle that was typed, by its unit [deg]."""
+        return replace(self, angle=math.radians(typed["deg"])) if "deg" in typed else self
 
     def body(self, area: float) -> BodyOptions:
         """Return the options of a body of an area [m^2]."""

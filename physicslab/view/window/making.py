@@ -20,7 +20,7 @@ class Making:
     draft : Draft
         The choices.
     begins : str
-        ``FROM_START`` or ``FROM_NOW``: of which moment its scene is.
+        ``FROM_START``, ``FROM_EDIT`` or ``FROM_NOW``: of which moment its scene is.
     quantity, reading : str
         The quantity, as ``ball.x``, and its measure in a run: the last value, the greatest, ...
     refused : dict of (str, str) to str

@@ -7,8 +7,8 @@ class Pace:
     """Counts the steps that are due in a frame, so that the motion does not depend on the frame rate.
 
     Elapsed wall time is made up for in whole steps of ``dt``. Below full speed each
-    step is shorter and there are not fewer, so that it looks as smooth; above, there are more steps and none
-    is longer, so that it is as accurate.
+    step is shorter and there are not fewer, so that it looks as smooth, unless steps are measured and stay
+    as they are; above, there are more steps and none is longer, so that it is as accurate.
 
     Parameters
     ----------
@@ -22,6 +22,8 @@ class Pace:
         Whether time stands still; :meth:`queue_step` still gives single steps.
     slow_motion : bool
         Whether the world runs at a quarter of its speed, whatever speed was chosen.
+    measured : bool
+        Whether steps are of one length at any speed: figures of a run are not to depend on that.
     chosen : float
         The speed when there is no slow motion; 1 is as fast as life.
     dropped : float
@@ -43,7 +45,7 @@ class Pace:
     def __init__(self, max_dt: float) -> None:
         self.max_dt = max_dt
         self.paused = False
-        self.slow_motion = False
+        self.slow_motion = self.measured = False
         self.chosen = 1.0
         self.dropped = 0.0
         self._due = 0.0
@@ -57,12 +59,12 @@ class Pace:
     @property
     def shortening(self) -> float:
         """How long a step is, as a share of ``dt``: less than 1 below full speed, never more."""
-        return min(self.speed, 1.0)
+        return 1.0 if self.measured else min(self.speed, 1.0)
 
     @property
     def _rate(self) -> float:
-        """How many steps are made for each at full speed: more than 1 above it, never less."""
-        return max(self.speed, 1.0)
+        """How many steps are made for each at full speed: less than 1 only where none is shorter."""
+        return self.speed / self.shortening
 
     def choose(self, factor: float) -> None:
         """Multiply the speed by a factor, within the speeds there are."""

@@ -9,8 +9,9 @@ from physicslab.view.window.lab_process import LabProcess, own_command
 from physicslab.view.window.naming import Naming
 
 _COMMAND, _LESSON = own_command("export"), own_command("lesson")
-FROM_START, FROM_NOW, WHOLE_LESSON = "From the start", "From now on", "The whole lesson"
-"""The start of a page, or its contents."""
+FROM_START, FROM_EDIT, FROM_NOW = "From the start", "From the last edit", "From now on"
+WHOLE_LESSON = "The whole lesson"
+"""The start of a page or a lesson, or its contents."""
 SLIDERS = 2
 """How many quantities the sliders of a page may change."""
 
@@ -34,6 +35,11 @@ class Slid:
     refused: str = ""
 
 
+def beginnings(last_edit: int) -> tuple[str, ...]:
+    """Return where a page or a lesson may begin, by the steps before the last edit: the best one first."""
+    return (FROM_EDIT, FROM_START, FROM_NOW) if last_edit else (FROM_START, FROM_NOW)
+
+
 class Sharing(LabProcess):
     """Makes a page of a scene while the window goes on.
 
@@ -46,7 +52,7 @@ class Sharing(LabProcess):
     seconds : str
         How long the run is to be [s].
     begins : str
-        ``FROM_START`` or ``FROM_NOW``, or ``WHOLE_LESSON``.
+        ``FROM_START``, ``FROM_EDIT`` or ``FROM_NOW``, or ``WHOLE_LESSON``.
     slid : list of Slid
         Fields of its sliders.
     path : path

@@ -243,7 +243,8 @@ class ComponentRows:
             ("Pendulum.length", _LENGTH, length, commit_length),
             ("Pendulum.angle", _ANGLE, without_rounding(degrees, 360.0), commit_angle),
         ]
-        self.numbers.pair_row(self.ui, "Pendulum", "Pendulum", parts)
+        words = "From its pin" if hanging.kind is Spring else "Pendulum"  # a cart on a spring is none
+        self.numbers.pair_row(self.ui, "Pendulum", words, parts)
 
     def build_slope(self, body: int) -> None:
         """Build the angle of a ramp."""

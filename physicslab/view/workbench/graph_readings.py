@@ -121,6 +121,8 @@ _VALUE = "-0.0000"
 """As wide as most values are: what follows stays in its place while they change."""
 _PALE, _DIM, _TINT = 0.45, 0.65, 0.6
 """Share of a colour in its tints: what a body's second line has, its third, and those that follow."""
+_GREY, _TOLD_APART = (0.86, 0.55), 24
+"""The shares where its second line would differ from its first by less than so much of a channel (of 255)."""
 _MARK = 1.1
 """Length of the mark in a line's colour, in heights of the text."""
 
@@ -131,8 +133,12 @@ def colours_of(world: World, theme: Theme, graph: GraphShown) -> list[Colour]:
     for n, line in enumerate(graph.lines):
         body = line.key[0]
         colour = own = theme.body(n) if body is None else named_colour(world, theme, body)
-        for towards, share in ((theme.text, _PALE), (theme.panel, _DIM)):
-            colour = mixed(towards, own, share) if colour in found else colour
+        pale = mixed(theme.text, own, _PALE)
+        tints = pale, mixed(theme.panel, own, _DIM)
+        if max(abs(a - b) for a, b in zip(pale, own, strict=True)) < _TOLD_APART:  # black among black letters
+            tints = mixed(theme.panel, own, _GREY[0]), mixed(theme.panel, own, _GREY[1])
+        for tint in tints:
+            colour = tint if colour in found else colour
         while colour in found and colour != theme.text:
             colour = mixed(theme.text, colour, _TINT)
         found.append(colour if colour != theme.text else own)

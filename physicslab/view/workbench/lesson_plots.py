@@ -137,7 +137,7 @@ def _plain(expression: Expression) -> str:
     if quantity == "time":
         return Sentence("time")
     try:
-        entity, name = quantity_of(quantity, [owner])
+        entity, name = quantity_of(quantity, () if owner == "world" else (owner,))
     except InvalidText:
         return expression.text
     own = Sentence(name)

@@ -9,7 +9,7 @@ from physicslab.view.controls import making as actions
 from physicslab.view.controls.share_actions import varying, words_of
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.making import Making
-from physicslab.view.window.sharing import FROM_NOW, FROM_START
+from physicslab.view.window.sharing import beginnings
 from physicslab.view.window.window import Window
 from physicslab.view.workbench.file_panels import build_answers, build_name
 from physicslab.world import World
@@ -40,9 +40,8 @@ def build_maker(ui: Ui, world: World, window: Window) -> None:
         refused = {_SAME.get(entry, entry): why for entry, why in making.refused.items()}
         _build_field(ui, making, refused, "Title", "title")
         _begin(ui, "The run")
-        making.begins = ui.choice(
-            "Lesson begins", making.begins, (FROM_START, FROM_NOW), width=_HALF * ui.size
-        )
+        holds = beginnings(window.edits.history.last_edit)
+        making.begins = ui.choice("Lesson begins", making.begins, holds, width=_HALF * ui.size)
         imgui.same_line()
         draft.seconds, _ = ui.field("Seconds of the lesson", draft.seconds, _NUMBER * ui.size,
                                     wrong=("run", "seconds") in refused)  # fmt: skip

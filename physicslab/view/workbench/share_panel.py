@@ -7,7 +7,7 @@ from imgui_bundle import imgui
 from physicslab.ecs.text import printable
 from physicslab.view.controls import share_actions
 from physicslab.view.toolkit.ui import Ui
-from physicslab.view.window.sharing import FROM_NOW, FROM_START, WHOLE_LESSON
+from physicslab.view.window.sharing import WHOLE_LESSON, beginnings
 from physicslab.view.window.window import Window
 from physicslab.view.workbench.file_panels import build_answers, build_name
 from physicslab.world import World
@@ -22,7 +22,8 @@ def build_share(ui: Ui, world: World, window: Window) -> None:
     with ui.floating("Share as a page", window.framing.middle, close):
         ui.faint("One file that plays the run in any browser, without a network", wrapped=False)
         entered = build_name(ui, "Page name", sharing.naming, _NAME, close)
-        holds = (FROM_START, FROM_NOW) if window.lesson is None else (WHOLE_LESSON, FROM_START, FROM_NOW)
+        holds = beginnings(window.edits.history.last_edit)
+        holds = holds if window.lesson is None else (WHOLE_LESSON, *holds)
         sharing.begins = ui.choice(
             "Page begins", sharing.begins, holds, width=(_NAME - _SECONDS - 4.0) * size
         )
