@@ -18,7 +18,8 @@ from physicslab.diagnostics.energy import measure_account, measure_energy
 from physicslab.ecs.config import SimulationConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import load_scene
-from physicslab.prefabs import box, circle
+from physicslab.lab.peers.peer import find_contacts
+from physicslab.prefabs import box, capsule, circle, polygon
 from physicslab.world import World
 
 WALLS = (-5.8, -0.4, 5.8, 5.8)
@@ -184,3 +185,34 @@ def test_an_elastic_ball_outside_comes_back_where_impacts_are_located_in_time() 
     world.component(ball, Material).friction = 0.0
     world.run(seconds=1.0)
     assert outside(world, ball) <= LIMIT
+
+
+def hexagon(world: World, place: tuple[float, float], angle: float) -> int:
+    corners = [(math.cos(math.tau * k / 6), math.sin(math.tau * k / 6)) for k in range(6)]
+    return polygon(world, place, corners, angle=angle)
+
+
+SHAPES = st.sampled_from((
+    lambda world, place, angle: circle(world, place, radius=0.8, angle=angle),
+    lambda world, place, angle: box(world, place, width=1.8, height=1.2, angle=angle),
+    lambda world, place, angle: capsule(world, place, length=1.2, radius=0.4, angle=angle),
+    lambda world, place, angle: polygon(world, place, ((0, 0), (1, 0), (0.3, 1.2)), radius=0.1, angle=angle),
+    hexagon,
+))  # fmt: skip
+ANGLE = st.floats(-3.0, 3.0)
+
+
+@given(one=SHAPES, two=SHAPES, place=st.tuples(ANGLE, ANGLE), angles=st.tuples(ANGLE, ANGLE))
+def test_outlines_overlap_as_deep_as_contacts_do(
+    one: Any, two: Any, place: tuple[float, float], angles: tuple[float, float]
+) -> None:
+    """They go by another law: the way out is the shortest one of all directions, looked at at once."""
+    world = empty_world()
+    bodies = [one(world, (0.0, 0.0), angles[0]), two(world, place, angles[1])]
+    find_contacts(world)
+    shapes = outlines_of(world, np.array([world.entity_index.row_of[body] for body in bodies]))
+    depth, way = overlap(shapes, 0, shapes, 1)
+    assert np.hypot(*way) == pytest.approx(1.0)
+    assert world.contacts.max_penetration == pytest.approx(max(depth, 0.0), abs=1e-9)
+    shapes.place[1] += depth * way
+    assert abs(overlap(shapes, 0, shapes, 1)[0]) < 1e-9, "that is a way out, and none is shorter"

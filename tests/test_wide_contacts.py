@@ -487,3 +487,15 @@ def test_other_ends_of_capsules_whose_ends_are_nearest_are_held(restitution: flo
         on_it = np.abs(beside + half * np.cos(angle)) < half
         lowest = min(lowest, float(above[on_it].min(initial=0.0)))
     assert lowest > -0.001  # -0.005 where the nearest ends were all that touched
+
+
+def test_a_heap_whose_contacts_become_many_has_loaded_what_they_need() -> None:
+    """A room of 40 bodies loaded ten kernels as its 64th contact came, and stood still for 25 ms."""
+    world = open_space()
+    container(world, width=2.0, height=6.0)
+    pile(world, 45, columns=8)
+    world.run(steps=1)
+    assert world.stepper is not None and world.contacts.wide.filled == 0
+    assert set(world.contacts.wide.kernels) <= set(world.stepper.kernels)
+    world.run(seconds=3.0)
+    assert world.contacts.wide.filled > 64

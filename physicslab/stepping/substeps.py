@@ -53,6 +53,8 @@ _KERNELS = (
     soft.advance, needed_factor, fat_boxes, leaving.index_bodies, grid.find_pairs,
     near_pairs.partition, near_pairs.carry_over, near_pairs.sort_scalar, slots.list_scalar,
 )  # fmt: skip
+_CONTACTS = 2
+"""Contacts that a body of a heap has at most, about: 40 in a room came to 64, and halted for 25 ms."""
 _COSTS: dict[type[System], int] = {
     AccelerateSystem: soft.ACCELERATE, IntegrateSystem: soft.INTEGRATE, BroadPhaseSystem: soft.BROAD_PHASE,
     ContactSystem: soft.CONTACT, ResolveSystem: soft.RESOLVE, JointSystem: soft.RESOLVE,
@@ -116,7 +118,8 @@ class Substeps:
         self._is_compiled = [*(part != soft.HOOK for part in self._parts), True]
         self._evaluates = state.has_forces and not {soft.UNIFORM, soft.PACKED}.isdisjoint(self._parts)
         compiled = _KERNELS if made.compiled else self._accounts.kernels
-        wide = state.contacts.wide.kernels if len(solid_rows(state)) >= MIN_WIDE else ()
+        crowd = _CONTACTS * len(solid_rows(state)) >= MIN_WIDE
+        wide = state.contacts.wide.kernels if crowd else ()
         self.kernels: tuple[Any, ...] = (*compiled, *wide, *(schedule.kernels(state) if made.reasons else ()))
         self._cost, self._forces = np.zeros(soft.COSTS, np.int64), made.forces
         self._columns: object = None
