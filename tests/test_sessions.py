@@ -72,7 +72,9 @@ def test_a_lock_is_not_taken_between_its_making_and_its_locking(
         if other is None:
             path.touch()
             code = (
-                "import sys, pathlib; from physicslab.desktop.sessions import Session;"
+                "import sys, pathlib, time; from physicslab.desktop.sessions import Session\n"
+                "remove = Session._remove\n"
+                "Session._remove = lambda self: (time.sleep(3), remove(self))\n"  # while it has the lock
                 "print(len(Session.abandoned(pathlib.Path(sys.argv[1]))))"
             )
             command = [sys.executable, "-c", code, str(tmp_path)]

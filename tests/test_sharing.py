@@ -134,6 +134,9 @@ def test_what_was_built_after_the_start_is_in_a_page_and_there_after_a_restart(d
         tap(desk, "r", pygame.KMOD_LCTRL)
         steps.append(history.step_count)
     assert steps == [20, 0]
+    desk.window.sharing.choosing = True
+    desk.frames(SETTLED)
+    assert desk.window.sharing.begins == FROM_START, "where nothing was edited before"
 
 
 def test_esc_gives_a_page_up_and_leaves_nothing(desk: Desk, tmp_path: Path) -> None:

@@ -41,7 +41,8 @@ def build_maker(ui: Ui, world: World, window: Window) -> None:
         _build_field(ui, making, refused, "Title", "title")
         _begin(ui, "The run")
         holds = beginnings(window.edits.history.last_edit)
-        making.begins = ui.choice("Lesson begins", making.begins, holds, width=_HALF * ui.size)
+        begins = making.begins if making.begins in holds else holds[0]  # an edit was taken back
+        making.begins = ui.choice("Lesson begins", begins, holds, width=_HALF * ui.size)
         imgui.same_line()
         draft.seconds, _ = ui.field("Seconds of the lesson", draft.seconds, _NUMBER * ui.size,
                                     wrong=("run", "seconds") in refused)  # fmt: skip

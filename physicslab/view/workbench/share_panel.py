@@ -24,9 +24,8 @@ def build_share(ui: Ui, world: World, window: Window) -> None:
         entered = build_name(ui, "Page name", sharing.naming, _NAME, close)
         holds = beginnings(window.edits.history.last_edit)
         holds = holds if window.lesson is None else (WHOLE_LESSON, *holds)
-        sharing.begins = ui.choice(
-            "Page begins", sharing.begins, holds, width=(_NAME - _SECONDS - 4.0) * size
-        )
+        begins = sharing.begins if sharing.begins in holds else holds[0]  # an edit was taken back
+        sharing.begins = ui.choice("Page begins", begins, holds, width=(_NAME - _SECONDS - 4.0) * size)
         if sharing.begins == WHOLE_LESSON:
             ui.faint("Predict, run, compare and answer in the browser; its solutions are in the page")
         else:
