@@ -360,7 +360,8 @@ def test_a_run_that_diverges_says_where_and_when(
     line = complaint(
         capsys, "run", str(tmp_path / "stiff.json"), "--json", str(report), "--csv", str(table), status=1
     )
-    assert line.startswith("resonance: ") and "no longer finite at t = " in line
+    # By which number it is seen first, a speed or an energy, hangs on the last digits.
+    assert line.startswith("resonance: ") and "finite at t = " in line
     assert not report.exists(), "a report of a run that failed would be taken for one that did not"
     rows = table.read_text().splitlines()
     assert len(rows) > 2, "what led there can be looked at"
