@@ -360,7 +360,7 @@ def test_a_run_that_diverges_says_where_and_when(
     line = complaint(
         capsys, "run", str(tmp_path / "stiff.json"), "--json", str(report), "--csv", str(table), status=1
     )
-    # By which number it is seen first, a speed or an energy, hangs on the last digits.
+    # Whether a speed or an energy is seen first depends on the last digits.
     assert line.startswith("resonance: ") and "finite at t = " in line
     assert not report.exists(), "a report of a run that failed would be taken for one that did not"
     rows = table.read_text().splitlines()

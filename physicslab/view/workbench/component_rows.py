@@ -243,7 +243,7 @@ class ComponentRows:
             ("Pendulum.length", _LENGTH, length, commit_length),
             ("Pendulum.angle", _ANGLE, without_rounding(degrees, 360.0), commit_angle),
         ]
-        words = "From its pin" if hanging.kind is Spring else "Pendulum"  # a cart on a spring is none
+        words = "From its pin" if hanging.kind is Spring else "Pendulum"  # a cart is not one
         self.numbers.pair_row(self.ui, "Pendulum", words, parts)
 
     def build_slope(self, body: int) -> None:
