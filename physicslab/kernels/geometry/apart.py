@@ -126,10 +126,11 @@ def is_sure_to_be_listed(
 
 
 @always_inlined
-def may_be_thrown_together(near: Near, p: int) -> bool:
+def may_be_thrown_together(near: Near, p: int, sweep: float) -> bool:
     """Whether a pair without points has a body that an impact has changed, and none that it has left swift.
 
-    Swift ones are swept again from their impact on (:mod:`physicslab.kernels.solver.meet_again`).
+    It counts from a ``sweep`` of impacts on: what no later one has changed was looked at before. Swift ones
+    are swept again from their impact on (:mod:`physicslab.kernels.solver.meet_again`).
     """
     a, b, changed, moments = near.apart[p].a, near.apart[p].b, near.angular_before, near.moments
     if a == _UNKNOWN:
@@ -137,7 +138,7 @@ def may_be_thrown_together(near: Near, p: int) -> bool:
         a, b = manifold.a if manifold.count == 0 else _TOUCHING, manifold.b
     if a == _TOUCHING:
         return False
-    hit = max(changed[a], changed[b]) >= 0.0
+    hit = max(changed[a], changed[b]) >= sweep
     return bool(hit and max(moments[a, SINCE], moments[b, SINCE]) == -math.inf)
 
 

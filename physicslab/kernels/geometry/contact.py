@@ -339,7 +339,7 @@ def _has_few_rows(entities: Rows) -> bool:
 @inlined
 def find_contacts(
     near: Near, count: int, motion: Motion, shapes: Shapes, materials: Materials, inverse: Inverse,
-    bounds: Bounds, when: int, h: float, start: float, speculative_margin: float, rest: float,
+    bounds: Bounds, when: int, h: float, start: float, speculative_margin: float, rest: float, sweep: float,
 ) -> int:  # fmt: skip
     """Find or refresh the contact points of the ``count`` scalar pairs; return how many have any.
 
@@ -348,7 +348,7 @@ def find_contacts(
     now: a pair that meets within it has points with the normal of that moment and the separation, along it,
     of now. Pairs whose count is negative are moved by event-driven stepping, and passed over. ``when`` it is
     says whether records of impacts are cleared, as a step begins, and whether only those pairs without points
-    are looked at of which an impact has changed a body. ``speculative_margin`` is how far [m] the forces may
+    are looked at of which an impact has changed a body, from its ``sweep`` on. ``speculative_margin`` is how far [m] the forces may
     bring two bodies together within the substep; ``rest`` more may follow before points are found again.
     """
     position, linear, touching = motion.position, motion.linear, near.touching
@@ -365,7 +365,7 @@ def find_contacts(
     for number in range(count):
         p = near.scalar[number]
         if again:
-            if not apart.may_be_thrown_together(near, p):
+            if not apart.may_be_thrown_together(near, p, sweep):
                 continue
             if not apart.is_sure_to_be_listed(near.manifolds[p], near, shapes, bounds, h, speculative_margin):
                 continue

@@ -77,7 +77,7 @@ def find_touching(
     list_near(near, motion, h, speculative_margin)
     counts[ACTIVE] = find_contacts(
         near, counts[SCALAR], motion, shapes, materials, inverse, bounds, when, h, start, speculative_margin,
-        rest,
+        rest, 0.0,
     )  # fmt: skip
 
 
@@ -100,6 +100,7 @@ def resolve_all_impacts(
     if counts[ACTIVE] > 0:
         note_motion(near.moments, motion)
     while counts[ACTIVE] > listed:
+        begun = float(sweep)
         came, counts[LEFT], energetic, lowered, sweep = resolve_impacts(
             _contacts(near), motion, shapes, inverse, acting, log, counts[LOGGED], h, window, near.moments,
             near.noted, changed, listed, sweep,
@@ -117,7 +118,7 @@ def resolve_all_impacts(
         if came > 0:
             counts[ACTIVE] = find_contacts(
                 near, counts[SCALAR], motion, shapes, materials, inverse, bounds, AFTER_IMPACTS, h, start / h,
-                speculative_margin, 0.0,
+                speculative_margin, 0.0, begun,
             )  # fmt: skip
     if impacts > 0:
         end_impacts(_contacts(near), motion, near.noted, changed)
