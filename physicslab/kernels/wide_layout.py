@@ -35,6 +35,8 @@ DISC_ROWS = ONE + 8 * WIDE
 
 TWO = ONE + 10 * WIDE
 """Offset of the second point of pairs with a box."""
+SWEPT = TWO + 9 * WIDE
+"""Numbers at the beginning of a block that a sweep reads."""
 BASE_X, BASE_Y, ANGLE_A, ANGLE_B = (TWO + WIDE * i for i in range(10, 14))
 # 1 where a body's points turn with it, 0 for a disc.
 TURNS_A, TURNS_B = TWO + 14 * WIDE, TWO + 15 * WIDE

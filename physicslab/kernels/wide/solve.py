@@ -31,6 +31,7 @@ from physicslab.kernels.float64x8 import (
     take_vectors,
 )
 from physicslab.kernels.near_counts import BOX_BLOCKS, DISC_BLOCKS
+from physicslab.kernels.prefetch import fetch
 
 SOFT = 0.02
 """Share of the smaller body's size that the contact spring corrects at its full rate, in addition to what the
@@ -39,6 +40,9 @@ _NO_OVERLAP = 1e-9
 """Share that does not count as overlap: rounding may put a corner of a box on a floor below its surface."""
 DEEPER = 0.15
 """Share beyond which overlap is not corrected by impulses."""
+
+_CACHED = 384
+"""Blocks up to which they stay in the nearer caches from one sweep to the next."""
 
 
 class SoftConstraint(NamedTuple):
@@ -351,6 +355,15 @@ def _sweep_boxes(
     return pressed, friction_work
 
 
+@always_inlined
+def _fetch_next(slots: L.Slots, number: int, blocks: int, rows: int) -> None:
+    """Fetch the block after the one at hand, where there are more than the nearest caches hold."""
+    if blocks > _CACHED:
+        at = slots.order[min(number + 1, blocks - 1)] * rows
+        for row in range(0, min(rows, L.SWEPT), L.WIDE):
+            fetch(slots.data, at + row)
+
+
 @inlined
 def sweep_wide(
     near: Near, motion: Motion, drift: float, soft: SoftConstraint, booked: bool
@@ -364,9 +377,11 @@ def sweep_wide(
     pressed, friction_work = everywhere(0.0), everywhere(0.0)
     mean = Mean(near.linear_before, near.angular_before)
     for number in range(near.counts[DISC_BLOCKS]):
+        _fetch_next(near.discs, number, near.counts[DISC_BLOCKS], L.DISC_ROWS)
         one, other = _sweep_discs(near.discs, near.discs.order[number], motion, mean, drift, soft, booked)
         pressed, friction_work = pressed + one, friction_work + other
     for number in range(near.counts[BOX_BLOCKS]):
+        _fetch_next(near.boxes, number, near.counts[BOX_BLOCKS], L.BOX_ROWS)
         one, other = _sweep_boxes(near.boxes, near.boxes.order[number], motion, mean, drift, soft, booked)
         pressed, friction_work = pressed + one, friction_work + other
     return sum_of(pressed), sum_of(friction_work)
@@ -423,6 +438,8 @@ def _start_boxes(slots: L.Slots, k: int, motion: Motion, warm_start_scale: float
 def warm_start_wide(near: Near, motion: Motion, warm_start_scale: float) -> None:
     """Apply the impulses of the last substep, ``warm_start_scale`` times as large, at all blocks."""
     for number in range(near.counts[DISC_BLOCKS]):
+        _fetch_next(near.discs, number, near.counts[DISC_BLOCKS], L.DISC_ROWS)
         _start_discs(near.discs, near.discs.order[number], motion, warm_start_scale)
     for number in range(near.counts[BOX_BLOCKS]):
+        _fetch_next(near.boxes, number, near.counts[BOX_BLOCKS], L.BOX_ROWS)
         _start_boxes(near.boxes, near.boxes.order[number], motion, warm_start_scale)
