@@ -359,9 +359,11 @@ def _sweep_boxes(
 def _fetch_next(slots: L.Slots, number: int, blocks: int, rows: int) -> None:
     """Fetch the block after the one at hand, where there are more than the nearest caches hold."""
     if blocks > _CACHED:
-        at = slots.order[min(number + 1, blocks - 1)] * rows
+        k = slots.order[min(number + 1, blocks - 1)]
         for row in range(0, min(rows, L.SWEPT), L.WIDE):
-            fetch(slots.data, at + row)
+            fetch(slots.data, k * rows + row)
+        fetch(slots.a, k * L.WIDE)
+        fetch(slots.b, k * L.WIDE)
 
 
 @inlined
