@@ -245,6 +245,21 @@ def _rows(context: Any, build: Any, signature: Any, arguments: Any) -> list[Any]
     return [build.load(build.gep(first, [ir.IntType(64)(slot)])) for slot in range(WIDE)]
 
 
+def _fetch_type(context: Any, array: Any, at: Any) -> Any:
+    """Fetch the line of eight numbers of an array that starts at a place into the nearest cache."""
+
+    def generate(context: Any, build: Any, signature: Any, arguments: Any) -> Any:
+        address, whole = ir.IntType(8).as_pointer(), ir.IntType(32)
+        line = _eight(build, _data(context, build, signature.args[0], arguments[0]), arguments[1])
+        of_function = ir.FunctionType(ir.VoidType(), [address, whole, whole, whole])
+        prefetch = build.module.declare_intrinsic("llvm.prefetch.p0", fnty=of_function)
+        # To be read, into the nearest cache, as data.
+        build.call(prefetch, [build.bitcast(line, address), whole(0), whole(3), whole(1)])
+        return context.get_dummy_value()
+
+    return types.void(array, at), generate
+
+
 def _take_numbers_type(context: Any, numbers: Any, rows: Any, first: Any) -> Any:
     """Return the numbers of eight rows: numbers[rows[first]] and so on."""
 
@@ -342,6 +357,7 @@ size_of: Callable[[Wide], Wide] = _inline(_size_type)
 mask_bits: Callable[[Mask], int] = _inline(_mask_bits_type)
 take: Callable[[Numbers, int], Wide] = _inline(_take_type)
 put: Callable[[Numbers, int, _Some], None] = _inline(_put_type)
+fetch: Callable[[Numbers | Rows, int], None] = _inline(_fetch_type)
 take_numbers: Callable[[Numbers, Rows, int], Wide] = _inline(_take_numbers_type)
 put_numbers: Callable[[Numbers, Rows, int, Wide], None] = _inline(_put_numbers_type)
 take_vectors: Callable[[Vectors, Rows, int], tuple[Wide, Wide]] = _inline(_take_vectors_type)

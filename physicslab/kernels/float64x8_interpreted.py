@@ -70,6 +70,11 @@ def _put(array: _Lanes, at: int, value: Any) -> None:
     array[at : at + WIDE] = value
 
 
+@equivalent_for(float64x8.fetch)
+def _fetch(array: _Lanes, at: int) -> None:
+    """Nothing: it changes no number."""
+
+
 @equivalent_for(float64x8.take_numbers)
 def _take_numbers(numbers: _Lanes, rows: NDArray[np.int64], first: int) -> _Lanes:
     return numbers[rows[first : first + WIDE]]

@@ -18,7 +18,6 @@ from physicslab.kernels.geometry.margins import (
 from physicslab.kernels.geometry.outline import Way, is_segment, kept_outline, on_segment, swing_of
 from physicslab.kernels.geometry.shapes import Shapes, has_own_way, is_chain, segment_of
 from physicslab.kernels.near_counts import ACTIVE, FOLLOWED, SCALAR
-from physicslab.kernels.prefetch import fetch
 from physicslab.kernels.records import Manifold, Point, Points
 
 _ROWS_FOUND_AGAIN = 64
@@ -364,9 +363,6 @@ def find_contacts(
     if _has_few_rows(near.entities):
         tolerance = _NO_MOTION
     for number in range(count):
-        later = near.scalar[min(number + 4, count - 1)]
-        fetch(near.apart, later)
-        fetch(near.manifolds, later)
         p = near.scalar[number]
         if again:
             if not apart.may_be_thrown_together(near, p, sweep):

@@ -25,7 +25,6 @@ from physicslab.kernels.geometry.outline import Way
 from physicslab.kernels.geometry.pair import SWEEP_THRESHOLD, WIDE_SHARE
 from physicslab.kernels.geometry.shapes import Shapes
 from physicslab.kernels.near_counts import DISC_BLOCKS, SCALAR
-from physicslab.kernels.prefetch import fetch
 from physicslab.kernels.wide.restore_slots import fill_points
 from physicslab.kernels.wide.slots import empty_slot, set_scalar, store_slot
 from physicslab.kernels.wide.within_step import bounces_within, put_on_surfaces
@@ -169,10 +168,6 @@ def refresh(
         if lost != 0:
             _lose(slots, k, lost, near)
         if first and moved & ~lost != 0:
-            for slot in range(k * L.WIDE, (k + 1) * L.WIDE):
-                fetch(near.manifolds, max(slots.pair[slot], 0))
-                fetch(near.points, 2 * max(slots.pair[slot], 0))
-                fetch(near.points, 2 * max(slots.pair[slot], 0) + 1)
             for place in range(L.WIDE):
                 slot = k * L.WIDE + place
                 p = slots.pair[slot]

@@ -20,6 +20,7 @@ from physicslab.kernels.float64x8 import (
     Wide,
     choose,
     everywhere,
+    fetch,
     greater,
     lesser,
     put,
@@ -31,7 +32,6 @@ from physicslab.kernels.float64x8 import (
     take_vectors,
 )
 from physicslab.kernels.near_counts import BOX_BLOCKS, DISC_BLOCKS
-from physicslab.kernels.prefetch import fetch
 
 SOFT = 0.02
 """Share of the smaller body's size that the contact spring corrects at its full rate, in addition to what the
