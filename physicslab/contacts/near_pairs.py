@@ -59,10 +59,7 @@ def list_all(state: State, pairs: NDArray[np.int64], count: int) -> None:
 def _zeros(count: int, record: np.dtype[Any]) -> NDArray[Any]:
     """Return zeros (count,), no page of which is touched before it is used, as numpy's may be."""
     own = {} if sys.platform == "win32" else {"flags": mmap.MAP_PRIVATE | mmap.MAP_ANONYMOUS}  # after a fork
-    memory = mmap.mmap(-1, count * record.itemsize, **own)
-    if len(memory) >= 1 << 22 and hasattr(mmap, "MADV_HUGEPAGE"):
-        memory.madvise(mmap.MADV_HUGEPAGE)
-    return np.frombuffer(memory, record)
+    return np.frombuffer(mmap.mmap(-1, count * record.itemsize, **own), record)
 
 
 def _make_table(state: State) -> None:
