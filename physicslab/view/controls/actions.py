@@ -252,7 +252,7 @@ def _told(words: str, what: str) -> Sentence:
 
 
 def undo(world: World, window: Window) -> None:
-    """Undo the last edit, and the run since; where there is none, the run."""
+    """Undo the last edit with what merely went on after it, or the run since a pause."""
     window.pause_for_history(world)
     words = window.edits.history.undo(runs=False)
     if words is None and window.scenes.left is not None and window.lesson is None:
