@@ -410,6 +410,8 @@ def test_a_gear_couples_two_pinned_wheels_by_their_radii(desk: Desk) -> None:
     circle(desk.world, (-3.0, 0.0))
     clicks(desk, "gear", (0.3, 0.1), (-3.0, 0.0))
     assert "pin them first" in desk.window.notice
+    clicks(desk, "belt", (-3.0, 0.0))
+    assert "A belt couples" in desk.window.notice and not desk.window.sketch.grips, "at once"
 
 
 def test_two_that_are_selected_are_joined_in_every_way(desk: Desk) -> None:

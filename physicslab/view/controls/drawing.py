@@ -89,7 +89,13 @@ def _put(world: World, window: Window, drawn: Drawn, place: Vector2) -> None:
     sketch = window.sketch
     closes, given = drawn.is_open and is_closed(window, place), drawn.measure.given(sketch.typed)
     if not closes:
-        sketch.grips.append(grip_at(world, drawn, window, place))
+        grip = grip_at(world, drawn, window, place)
+        if drawn.refuses is not None and (reason := drawn.refuses(world, grip)):
+            window.notify(reason, 5.0, failed=True)
+            if not sketch.grips:
+                sketch.cancel()
+            return
+        sketch.grips.append(grip)
     sketch.begin, sketch.typed, sketch.stroke = window.pointer, "", []
     if drawn.pours and sketch.held:
         return

@@ -31,6 +31,8 @@ type Build = Callable[[World, Sequence[Vector2], Recipe], None]
 """Makes bodies in a world of their own, through points [m]."""
 type Join = Callable[[World, Window, Sequence[Grip]], Component | str]
 """Returns the joint of points that were put down, or why there is none."""
+type Refuse = Callable[[World, Grip], str]
+"""Returns why a joint cannot have a point; empty where it can."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,6 +49,8 @@ class Drawn:
         How many points make it; 0: as many as are put down until it is closed at the first, or by a stroke.
     build, join : callable, optional
         Makes bodies; or returns the joint of what lies at the points.
+    refuses : callable, optional
+        Returns why a joint cannot have a point, as soon as that is put down; empty where it can.
     measure : Measure
         How its second point follows from numbers.
     ways : tuple of Vector2
@@ -71,6 +75,7 @@ class Drawn:
     points: int = 2
     build: Build | None = None
     join: Join | None = None
+    refuses: Refuse | None = None
     measure: Measure = LENGTH
     ways: tuple[Vector2, ...] = ()
     per_size: Vector2 = Vector2()

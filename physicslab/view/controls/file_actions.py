@@ -136,6 +136,8 @@ def toggle_film(world: World, window: Window) -> None:
         ending = Path(filming.naming.text).suffix or ENDINGS[0]
         stem = file_stem(name_of(world, window))
         filming.naming = Naming(free_name(new_paths(Path.cwd(), stem, ending)))
+    else:
+        window.notify("No film was begun")
 
 
 def begin_film(world: World, window: Window) -> None:
