@@ -165,9 +165,10 @@ def as_slice(rows: NDArray[np.int64]) -> Any:
 
 @lru_cache(1024)
 def _layout(kinds: tuple[Kind, ...], capacity: int) -> tuple[int, list[tuple[type, tuple[int, ...], int]]]:
-    """Return the bytes of a block for ``capacity`` rows; of presence and each column type, shape and first byte.
+    """Return the size of a block for ``capacity`` rows [bytes]; type, shape and first byte of each column.
 
-    Tables of one component are mostly of one size, those of all worlds together.
+    The first column says where the component is present. Tables of one component are mostly of one size,
+    those of all worlds together.
     """
     size, places = 0, []
     for dtype, width in ((np.bool_, 1), *((_DTYPES[kind], _width(kind)) for kind in kinds)):
