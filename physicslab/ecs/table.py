@@ -170,7 +170,7 @@ def _layout(kinds: tuple[Kind, ...], capacity: int) -> tuple[int, list[tuple[typ
     The first column says where the component is present. Tables of one component are mostly of one size,
     those of all worlds together.
     """
-    size, places = 0, []
+    size, places = 0, list[tuple[type, tuple[int, ...], int]]()
     for dtype, width in ((np.bool_, 1), *((_DTYPES[kind], _width(kind)) for kind in kinds)):
         places.append((dtype, (capacity, width) if width > 1 else (capacity,), size))
         size += -(-capacity * width * np.dtype(dtype).itemsize // _LINE) * _LINE
