@@ -352,8 +352,7 @@ def next_branch(world: World, window: Window) -> None:
 
 def save_recording(world: World, window: Window) -> None:
     """Keep what was done as a file that ``physicslab replay`` plays, where the program was started."""
-    window.hand.drop(world)
-    window.edits.keep()
+    window.put_down(world)
     paths = new_paths(Path.cwd(), file_stem(name_of(world, window)), RECORDING_ENDING)
     try:
         path = next(path for path in paths if not path.exists())

@@ -10,6 +10,7 @@ from physicslab.components import Transform
 from physicslab.ecs.component import Component
 from physicslab.ecs.quantity_text import InvalidText
 from physicslab.ecs.vector import Vector2
+from physicslab.view.canvas.keyboard import held_keys
 from physicslab.view.controls.measure import HANGING, LENGTH, Measure
 from physicslab.view.controls.picking import body_at
 from physicslab.view.window.edits import Recipe
@@ -120,7 +121,7 @@ def at_cursor(world: World, drawn: Drawn, window: Window) -> Vector2:
         return place
     first = sketch.grips[-1].place(world)
     way = place - first
-    if pygame.key.get_mods() & pygame.KMOD_SHIFT:
+    if held_keys() & pygame.KMOD_SHIFT:
         way = drawn.measure.rounded(way)
     if sketch.typed:
         try:

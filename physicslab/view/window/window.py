@@ -384,6 +384,11 @@ class Window:
         )
         self.hand.write = lambda world, command: self.edits.write(command)
 
+    def put_down(self, world: World) -> None:
+        """Let go of what is held, and make an edit of what was shown: the world is written as it is."""
+        self.hand.drop(world)
+        self.edits.keep()
+
     def pause_for_history(self, world: World) -> None:
         """Pause, and let go of what is held or dragged, to go to another place of the history."""
         self.hand.drop(world)
