@@ -167,7 +167,7 @@ def _build(
         refused = "" if checked else refused_place(world, outlines_through(drawn, places, recipe))
         made = [] if refused else _commands(drawn, places, window, recipe, given)
     except InvalidValue as error:
-        refused = f"{error.field} must be {error.allowed}"
+        refused = Sentence(f"{error.field} = {error.value}: must be {error.allowed}")
     except ValueError as error:  # no outline
         refused = str(error)
     if refused:
