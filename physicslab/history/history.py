@@ -100,7 +100,7 @@ class History:
         self.world, self.start = world, world.time
         self._places, self._branches = Places(world, budget), Branches()
         self._end = 0
-        self._divided = False
+        self._divided = self._own = False
 
     # ---- doing ---------------------------------------------------------------------------------------------
 
@@ -168,9 +168,9 @@ class History:
             self._run().add_step(float(h), places.digester.digest(world))
             self._advance(began)
 
-    def divide(self) -> None:
-        """Let the next step or write begin another run: undo takes back what comes from now on by itself."""
-        self._divided = True
+    def divide(self, *, own: bool = False) -> None:
+        """Let the next step or write begin another run: undo takes back one of its ``own`` by itself."""
+        self._divided, self._own = True, own
 
     # ---- going through -------------------------------------------------------------------------------------
 
@@ -178,7 +178,7 @@ class History:
         """Undo the last edit or run before the present place; return its words, ``None`` if none is.
 
         In the middle of a run, its beginning is taken back. Without ``runs``, a run that merely went on
-        after an edit is taken back together with it; one after :meth:`divide` is taken back by itself.
+        after an edit is taken back together with it; one of its own (:meth:`divide`) is taken back by itself.
         """
         places, line = self._places, self._places.line
         places.mend()
@@ -376,8 +376,8 @@ class History:
         self._cut()
         entries = self._places.line.entries
         if not entries or not isinstance(entries[-1], Run) or self._divided:
-            self._places.line.add(Run(own=self._divided))
-        self._divided = False
+            self._places.line.add(Run(own=self._own))
+        self._divided = self._own = False
         run = entries[-1]
         assert isinstance(run, Run)
         return run

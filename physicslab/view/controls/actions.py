@@ -50,7 +50,7 @@ def toggle_pause(world: World, window: Window) -> None:
         return
     window.pace.toggle_pause()
     if window.hand.entity is None:  # what the hand does goes on, and is one act
-        window.edits.history.divide()
+        window.edits.history.divide(own=not window.pace.paused)
     if not window.pace.paused:
         window.error = ""
 
