@@ -15,6 +15,7 @@ from collections.abc import Generator, Iterator
 from pathlib import Path
 
 import pytest
+from _pytest.doctest import DoctestModule
 from hypothesis import settings
 
 # Before anything imports pygame: tests draw, and open windows that are not seen.
@@ -93,6 +94,15 @@ def pytest_sessionstart(session: pytest.Session) -> None:
 
 
 @pytest.hookimpl(wrapper=True)
+def pytest_collect_file(file_path: Path) -> Generator[None, list[pytest.Collector], list[pytest.Collector]]:
+    """Search for examples only in modules that have some: a search goes through all that a module imports."""
+    found = yield
+    if file_path.suffix != ".py" or b">>>" in file_path.read_bytes():
+        return found
+    return [collector for collector in found if not isinstance(collector, DoctestModule)]
+
+
+@pytest.hookimpl(wrapper=True)
 def pytest_make_collect_report(
     collector: pytest.Collector,
 ) -> Generator[None, pytest.CollectReport, pytest.CollectReport]:
@@ -114,9 +124,13 @@ def is_fuzzed(node: pytest.Collector | pytest.Item) -> bool:
 
 
 def pytest_collection_finish() -> None:
-    """Let no search for garbage go through the modules of nine thousand tests, which stay."""
+    """Let no search for garbage go through the modules of nine thousand tests, which stay.
+
+    And search less often than after every 700 objects: worlds are made and left by thousands.
+    """
     gc.collect()
     gc.freeze()
+    gc.set_threshold(5_000, 10, 10)
 
 
 def _processor_time() -> float:

@@ -323,18 +323,18 @@ def test_the_package_alone_imports_neither_numba_nor_pygame() -> None:
 
 
 @pytest.mark.parametrize(
-    "content", ['{"language": "de", "colours": "projector"}', '{"language": "de"', "[1]"]
+    "content", ['{"language": "de", "colours": "projector", "text": 2.0}', '{"language": "de"', "[1]"]
 )
-def test_what_is_said_while_it_loads_is_in_the_chosen_language(
+def test_what_is_said_while_it_loads_is_in_the_chosen_language_and_size(
     content: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     path = tmp_path / "preferences.json"
     path.write_text(content)
-    said: list[tuple[str, str]] = []
+    said: list[tuple[str, str, int]] = []
 
-    def load(canvas: Canvas, theme: Theme, remark: str) -> None:
-        draw_loading(canvas, theme, remark)
-        said.append((theme.name, canvas.language.reword("Loading, 3 s")))
+    def load(canvas: Canvas, theme: Theme, remark: str, size: int) -> None:
+        draw_loading(canvas, theme, remark, size)
+        said.append((theme.name, canvas.language.reword("Loading, 3 s"), size))
 
     monkeypatch.setattr("physicslab.desktop.appearance.preferences_path", lambda: path)
     monkeypatch.setattr(app, "draw_loading", load)
@@ -343,5 +343,5 @@ def test_what_is_said_while_it_loads_is_in_the_chosen_language(
         assert app._load(display, "physicslab.desktop.session_window", app._Workers(ExitStack()))
     chosen = content.endswith("}")
     words = "Wird geladen, 3 s" if chosen else "Loading, 3 s"
-    assert set(said) == {("projector" if chosen else DARK.name, words)}
+    assert set(said) == {("projector" if chosen else DARK.name, words, 30 if chosen else 15)}
     assert path.read_text() == content, "a file that cannot be read is put aside where it can be said"

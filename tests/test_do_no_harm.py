@@ -125,13 +125,33 @@ def test_undo_takes_back_a_throw_and_leaves_what_was_made_before(desk: Desk) -> 
     assert len(desk.world.entities()) == 1
 
 
-def test_with_no_edit_undo_goes_back_to_the_start(desk: Desk) -> None:
-    for _ in range(2):
-        desk.frames(12)
-        tap(desk, "space")
-        tap(desk, "space")
+def test_with_no_edit_undo_takes_back_one_run_at_a_time(desk: Desk) -> None:
+    desk.frames(12)
+    tap(desk, "space")
+    first = desk.world.time
+    tap(desk, "space")
+    desk.frames(24)
+    tap(desk, "space")
+    second = desk.world.time - first
+    for back, ran in ((first, second), (0.0, first)):
+        tap(desk, "z", CTRL)
+        assert desk.world.time == back and f"ran {ran:.1f} s" in desk.window.notice
+
+
+def test_a_run_from_a_pause_and_the_edit_before_it_are_undone_one_by_one(desk: Desk) -> None:
+    tap(desk, "space")
+    before, start = state_hash(desk.world), desk.world.time
+    tap(desk, "r")
+    tap(desk, "space")
+    desk.frames(20)
+    after = desk.world.time
     tap(desk, "z", CTRL)
-    assert desk.world.time == 0.0 and "ran 0." in desk.window.notice
+    assert not desk.world.entities() and desk.world.time == start
+    tap(desk, "z", CTRL)
+    assert state_hash(desk.world) == before
+    for moment in (start, after):
+        tap(desk, "y", CTRL)
+        assert not desk.world.entities() and desk.world.time == moment
 
 
 def test_a_click_on_a_spark_opens_the_microscope_in_a_pause_alone() -> None:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pygame
 import pytest
-from desk import Desk, empty_world, tap
+from desk import Desk, empty_world, tap, write
 
 from physicslab import load_scene
 from physicslab.components import (
@@ -29,6 +29,7 @@ from physicslab.components import (
 )
 from physicslab.ecs.quantity_text import InvalidText
 from physicslab.ecs.vector import Vector2
+from physicslab.languages.language import language
 from physicslab.prefabs import box, circle
 from physicslab.view.controls import measure, polygons, preview
 from physicslab.view.controls.joining import attachments
@@ -410,6 +411,21 @@ def test_a_gear_couples_two_pinned_wheels_by_their_radii(desk: Desk) -> None:
     circle(desk.world, (-3.0, 0.0))
     clicks(desk, "gear", (0.3, 0.1), (-3.0, 0.0))
     assert "pin them first" in desk.window.notice
+    clicks(desk, "belt", (-3.0, 0.0))
+    assert "A belt couples" in desk.window.notice and not desk.window.sketch.grips, "at once"
+
+
+def test_a_refusal_of_a_typed_mass_repeats_it(desk: Desk) -> None:
+    desk.window.tool = "box"
+    desk.press(0.0, 1.0)
+    desk.frames()
+    desk.move(1.0, 2.0)
+    desk.frames()
+    write(desk, "1 m, 1 m, -2 kg")
+    desk.release(1.0, 2.0)
+    desk.frames(2)
+    assert "mass = -2" in desk.window.notice and not desk.world.entities()
+    assert language("de").reword(desk.window.notice).startswith("Kasten: ")
 
 
 def test_two_that_are_selected_are_joined_in_every_way(desk: Desk) -> None:

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from physicslab.components import Held, Mass, Name, Transform, Velocity
+from physicslab.components import Held, Mass, Name, Thrust, Transform, Velocity
 from physicslab.ecs.vector import Vector2
 from physicslab.world import World
 
@@ -239,3 +239,15 @@ def test_rows_of() -> None:
         entities[2],
     ]
     assert world.entity_index.rows_of(asked)[2] == -1
+
+
+def test_no_table_is_made_for_a_component_that_no_entity_has() -> None:
+    world = World()
+    world.spawn(Transform((1, 0)))
+    assert not len(world.batch(Thrust)) and not len(world.batch(Transform, Thrust))
+    assert Thrust not in world.entity_index.tables
+    body = world.spawn(Transform((2, 0)), Thrust())
+    assert world.batch(Transform, Thrust).entities.tolist() == [body]
+    world.remove(body)
+    assert not len(world.batch(Thrust))
+    rows_and_handles_agree(world)

@@ -166,6 +166,10 @@ def test_what_cannot_be_filmed_is_said_at_the_field(
     tap(desk, "escape")
     tap(desk, "escape")
     assert not desk.window.filming.choosing and not desk.window.closing
+    for _ in range(2):  # the second while a name is written
+        tap(desk, "f9")
+        desk.frames(SETTLED)
+    assert not desk.window.filming.choosing and desk.window.notice == "No film was begun"
 
 
 def test_where_nothing_was_run_there_is_nothing_to_film(desk: Desk) -> None:

@@ -28,6 +28,7 @@ def lead(hand: Hand, world: World, path: list[Vector2], now: float = 0.0) -> flo
         now += FRAME
         hand.move(place, now)
         hand.lead(world, FRAME, paused=False)
+        hand.pull(world, FRAME)
         world.step(FRAME)
     return now
 

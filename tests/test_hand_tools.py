@@ -4,10 +4,10 @@ import math
 
 import pygame
 import pytest
-from desk import Desk, bits, click_at, empty_world, tap, write
+from desk import FRAME, Desk, bits, click_at, empty_world, tap, write
 from test_hud import frame, recorded
 
-from physicslab.components import Held, Mass, Spring, Transform, Velocity
+from physicslab.components import Held, Mass, Rope, Spring, Transform, Velocity
 from physicslab.ecs.vector import Vector2
 from physicslab.history import RemoveComponent
 from physicslab.prefabs import box, circle, pendulum
@@ -342,6 +342,21 @@ def test_a_pin_that_is_dragged_while_time_runs_is_an_act_of_its_own() -> None:
     desk.key("z", pygame.KMOD_CTRL)
     desk.frames()
     assert world.component(spring, Spring).anchor_b == Vector2(0.0, 2.0) and world.time == thrown
+
+
+@pytest.mark.parametrize("steps", [1, 6])
+def test_what_joints_hold_follows_the_hand_as_fast_where_frames_are_slow(steps: int) -> None:
+    """It was pulled once a frame: with ten frames a second it was 0.3 m off after a second."""
+    world = empty_world()
+    ball = circle(world, (0.0, -1.0), radius=0.2)
+    world.spawn(Rope(b=ball, length=3.0))
+    desk = Desk(world)
+    desk.window.tool = "select"
+    desk.press(0.0, -1.0)
+    desk.frames(elapsed=steps * FRAME)
+    desk.move(1.5, 0.5)
+    desk.frames(60 // steps, elapsed=steps * FRAME)
+    assert (world.component(ball, Transform).position - Vector2(1.5, 0.5)).magnitude < 0.02
 
 
 # ---- what is dragged while time stands still is never lost, and is one act ---------------------------------

@@ -382,6 +382,20 @@ def test_the_same_words_make_way_again_for_a_body_that_came_in_the_meantime() ->
     assert not paused_at().colliderect(first)
 
 
+def test_the_word_paused_makes_way_for_what_is_drawn_at_the_cursor() -> None:
+    canvas = MeasuringCanvas((1280, 720))
+    desk = Desk(empty_world(), canvas)
+    desk.key("space")
+    desk.frames(3)
+    rect = next(rect for words, rect in canvas.words if words == "PAUSED")
+    for (x, y), shown in ((rect.center, False), ((rect.centerx, rect.top - 200), True)):
+        desk.move(*desk.window.camera.to_world((x, y)))
+        desk.frames(2)
+        canvas.words.clear()
+        desk.frames()
+        assert any(words == "PAUSED" for words, _ in canvas.words) == shown
+
+
 def test_a_step_that_takes_long_is_told_with_its_reason(monkeypatch: pytest.MonkeyPatch) -> None:
     desk, seconds = Desk(load_scene("drop")), itertools.count(0.0, 2.0)
     monkeypatch.setattr("physicslab.desktop.sandbox.time.thread_time", lambda: next(seconds))

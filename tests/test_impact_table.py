@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from physicslab import World, cli, load_scene
 from physicslab.components import Velocity
-from physicslab.diagnostics import impact_table as impact_tables
+from physicslab.contacts import report
 from physicslab.diagnostics.energy import measure_account, measure_momentum
 from physicslab.diagnostics.impact_table import (
     ImpactTableWriter,
@@ -380,7 +380,7 @@ def test_impacts_that_are_lost_are_told(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(Contacts, "LOGGED", 50)
-    monkeypatch.setattr(impact_tables, "_MAX_RING", 50)
+    monkeypatch.setattr(report, "_MAX_RING", 50)
     out = tmp_path / "impacts.csv"
     assert run("gas", "--seconds", "0.2", "--ledger", str(out), "--json", str(tmp_path / "r")) == 0
     lines = [line for line in capsys.readouterr().err.splitlines() if "--ledger" in line]

@@ -85,7 +85,7 @@ def test_on_macos_every_text_calls_ctrl_cmd(code: str) -> None:
     usual = "Strg" if code == "de" else "Ctrl"
     said = [mac.reword(control.label) for control in CONTROLS if control.label.startswith("Ctrl")]
     assert len(said) > 15 and all(label.startswith("Cmd+") for label in said)
-    tip = "Undo the last edit, and the run since (Ctrl+Z)"
+    tip = "Undo one thing: the last edit, the last throw, or the run since Play (Ctrl+Z)"
     assert mac.reword(tip) == own.reword(tip).replace(usual, "Cmd") != own.reword(tip)
     assert mac.say("Ctrl+{key}", key="K") == "Cmd+K" and mac.reword("Controls") == own.reword("Controls")
 

@@ -20,11 +20,12 @@ from physicslab.lessons.answers import grade, read_answers
 from physicslab.lessons.catalogue import find_lesson
 from physicslab.lessons.lesson import Lesson, Run
 from physicslab.lessons.live_run import record_run
+from physicslab.lessons.setup import Case
 from physicslab.prefabs import circle
 from physicslab.view.controls.controls import CONTROLS
 from physicslab.view.controls.lesson_actions import choose_language, open_lesson
 from physicslab.view.overlay.arrows import FORCE
-from physicslab.view.window.lesson import OpenLesson
+from physicslab.view.window.lesson import OpenLesson, Trial
 
 FALL = """---
 format: physicslab-lesson/1
@@ -236,6 +237,13 @@ def test_prediction_theory_and_measurement_stand_beside_each_other(desk: Desk) -
     assert lesson.trial.case.values == (("height", "2 m"),)
     at = desk.ui.words.index("Twice as high, and not twice as fast")
     assert "as run" in desk.ui.words[at:], "its graph is below what it shows, beside the usual run"
+    compare = next(iter(lesson.lesson.compares()))
+    usual, rows = lesson.lesson.setup.values().named("height"), len(lesson.rows(compare))
+    assert usual is not None
+    for text, more in ((f"{100.0 * usual.value:g} cm", 0), ("1.7 m", 1), ("170 cm", 1)):
+        case = Case("own", (("height", text),))
+        lesson._made[compare.run.line, case.values] = Trial(lesson.lesson, compare.run, case)
+        assert len(lesson.rows(compare)) == rows + more, "a row for each set of values"
 
 
 def test_answers_are_a_file_that_grade_reads_and_that_is_taken_up_again(desk: Desk, tmp_path: Path) -> None:

@@ -18,8 +18,9 @@ import pytest
 
 from physicslab import PhysicsConfig, circle
 from physicslab.cli import main
+from physicslab.contacts.report import ImpactReader
 from physicslab.diagnostics.figures import Figures
-from physicslab.diagnostics.impact_table import ImpactReader, impact_table
+from physicslab.diagnostics.impact_table import impact_table
 from physicslab.diagnostics.samples import Record
 from physicslab.ecs.conditions import Condition
 from physicslab.ecs.quantity_text import Expression, InvalidText, Quantity
@@ -287,7 +288,7 @@ def test_figures_hold_where_impacts_follow_within_a_step(seed: int) -> None:
         return Expression(text).value(figures).value
 
     assert value("mean(b4.vx)") == pytest.approx(value("b4.x - start(b4.x)"), abs=1e-12)
-    impacts = impact_table(world, np.concatenate(list(reader.read())))
+    impacts = impact_table(world, np.concatenate(list(reader.blocks(world))))
     lost = float(impacts["energy_lost"] @ (1.0 - impacts["time"]))
     assert value("mean(world.kinetic)") == pytest.approx(value("start(world.kinetic)") - lost, rel=1e-12)
     assert value("mean(b4.speed^2)") == pytest.approx(value("mean(b4.vx^2)") + value("mean(b4.vy^2)"))

@@ -185,6 +185,7 @@ class CountingDisplay:
 
     def __init__(self) -> None:
         self.canvas, self.shown, self.left = RecordingCanvas((640, 480)), 0, 0.0
+        self.density = 1.0
 
     def show(self) -> float:
         self.shown += 1
@@ -277,9 +278,10 @@ def test_the_user_may_leave_while_it_compiles(
 
 
 @pytest.mark.parametrize("size", [(1280, 720), (480, 320), (200, 100)])
-def test_the_bar_is_as_long_as_what_is_done(size: tuple[int, int]) -> None:
+@pytest.mark.parametrize("letters", [15, 40])
+def test_the_bar_is_as_long_as_what_is_done(size: tuple[int, int], letters: int) -> None:
     canvas = RecordingCanvas(size)
-    draw_progress(canvas, DARK, 0.25, "5 of 20")
+    draw_progress(canvas, DARK, 0.25, "5 of 20", letters)
     frame, filled = (call["rect"] for call in canvas.called("panel"))
     assert filled[2] == round(0.25 * frame[2])
     assert "5 of 20" in canvas.words

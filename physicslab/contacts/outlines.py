@@ -61,6 +61,11 @@ class Outlines:
         return reach
 
     @property
+    def boxes(self) -> tuple[Numbers, Numbers]:
+        """The lowest and the highest corner of the upright box around each (n, 2) [m]."""
+        return self.place - self.reach, self.place + self.reach
+
+    @property
     def area(self) -> Numbers:
         """Area within each of them (n,) [m^2]; 0 for a chain."""
         around = np.roll(self.corners, -1, axis=1)

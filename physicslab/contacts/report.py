@@ -207,22 +207,45 @@ def _describe_point(point: Any, centre: Vector2, rate: float) -> ContactPoint:
     )  # fmt: skip
 
 
+_GROWS_FROM = 0.25
+"""Share of the log that is filled between two readings from which on it is doubled."""
+_MAX_RING = 1_600_000
+"""Largest number of impacts in the log."""
+_BLOCK = 65_536
+"""Impacts that are read at a time."""
+
+
 class ImpactReader:
     """Reads each impact of a world once.
 
     The log of a world (``Contacts.log``) holds the last impacts, and ``Contacts.logged`` is how many there
     were: what has a higher number than at the last call is new, however many steps were made meanwhile.
+
+    Parameters
+    ----------
+    state : State, optional
+        The world whose next impact is the first, if they are logged (``Contacts.read``).
+
+    Attributes
+    ----------
+    lost : int
+        How many were overwritten in the log before :meth:`blocks` could read them.
     """
 
-    def __init__(self) -> None:
-        self._state: State | None = None
-        self._read = 0
+    def __init__(self, state: State | None = None) -> None:
+        self._state, self._next, self.lost = state, 0, 0
+        self.skip()
+
+    def skip(self) -> None:
+        """Begin with those that come."""
+        if self._state is not None:
+            self._next = int(self._state.contacts.logged)
 
     def follow(self, state: State) -> None:
         """Begin with the next impact of ``state``, unless it is the world that is read already."""
         if state is not self._state:
-            self._state, self._read = state, state.contacts.logged
-            state.contacts.read = True
+            self._state, state.contacts.read = state, True
+            self.skip()
 
     def new(self, state: State) -> NDArray[Any]:
         """Return the impacts since the last call, oldest first: an array of IMPACT (n,).
@@ -230,6 +253,24 @@ class ImpactReader:
         If there were more than the log holds, the oldest are missing.
         """
         self.follow(state)
-        new = state.contacts.impacts_since(self._read)
-        self._read = state.contacts.logged
+        new = state.contacts.impacts_since(self._next)
+        self.skip()
         return new
+
+    def blocks(self, state: State) -> Iterator[NDArray[Any]]:
+        """Yield the impacts since the last call, arrays of IMPACT (n,) in the order of the log.
+
+        The log is doubled where it fills up fast.
+        """
+        contacts = state.contacts
+        logged, ring = int(contacts.logged), len(contacts.log)
+        new = logged - self._next
+        if new <= 0:
+            return
+        oldest = max(self._next, contacts.first_logged)
+        self.lost += oldest - self._next
+        for first in range(oldest, logged, _BLOCK):
+            yield contacts.impacts_since(first, _BLOCK)
+        self._next = logged
+        if new > _GROWS_FROM * ring and ring < _MAX_RING:
+            contacts.lengthen_log(2 * ring)

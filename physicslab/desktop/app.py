@@ -11,6 +11,7 @@ from physicslab.desktop.garbage import loading
 from physicslab.desktop.progress import PAUSE, draw_loading
 from physicslab.ecs.config import WindowConfig
 from physicslab.languages.language import language
+from physicslab.view.canvas.canvas import text_height
 from physicslab.view.canvas.display import Display, NoScreen, wants_to_leave
 
 if TYPE_CHECKING:
@@ -88,12 +89,14 @@ def _load(display: Display, module: str, workers: _Workers) -> bool:
         found = appearance.read_preferences(appearance.preferences_path())
     display.canvas.language = language(appearance.chosen_language(found))
     theme, start, drawn = appearance.chosen_theme(found), time.perf_counter(), None
+    scale = appearance.chosen_scale(found, display.density)
     while drawn is None or thread.is_alive():
         seconds = time.perf_counter() - start
         remark = f"Loading, {int(seconds)} s" if seconds > _PATIENCE else ""
         if drawn != (remark, display.canvas.size):
             first, drawn = drawn is None, (remark, display.canvas.size)
-            draw_loading(display.canvas, theme, remark)
+            size = text_height(display.canvas.size, scale)
+            draw_loading(display.canvas, theme, remark, size)
             display.show()
             if first:
                 thread.start()

@@ -13,6 +13,8 @@ from physicslab.theme import DARK, THEMES, Theme
 UNREADABLE = OSError, SceneError, ValueError, RecursionError
 """The errors of :func:`read_preferences`."""
 _MAX_BYTES = 1_000_000
+_MIN_SCALE, _MAX_SCALE = 0.5, 3.0
+"""The sizes of text that are taken from a file, as shares of the usual."""
 
 
 def preferences_path() -> Path:
@@ -31,6 +33,12 @@ def read_preferences(path: Path) -> dict[str, Any]:
 def chosen_theme(preferences: dict[str, Any]) -> Theme:
     """Return the colours that were chosen, or the usual ones."""
     return next((theme for theme in THEMES if theme.name == preferences.get("colours")), DARK)
+
+
+def chosen_scale(preferences: dict[str, Any], usual: float) -> float:
+    """Return how many times as large as usual text is chosen to be, or the ``usual`` scale of the display."""
+    scale = preferences.get("text")
+    return float(scale) if isinstance(scale, int | float) and _MIN_SCALE <= scale <= _MAX_SCALE else usual
 
 
 def chosen_language(preferences: dict[str, Any]) -> str:

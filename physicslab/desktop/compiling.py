@@ -126,6 +126,8 @@ class Compiling:
         The processes that compile; none where all are in the cache, or all are to be interpreted.
     theme : Theme
         The colours of that.
+    size : int
+        Height of its letters until the first frame [px].
 
     Attributes
     ----------
@@ -133,14 +135,14 @@ class Compiling:
         The object that finds whether the scene that is shown may be interpreted.
     """
 
-    def __init__(self, display: Display, warmup: Warmup | None, theme: Theme = DARK) -> None:
+    def __init__(self, display: Display, warmup: Warmup | None, theme: Theme = DARK, size: int = 14) -> None:
         self.scenes = SmallScenes()
         self._display = display
         self._warmup = warmup
         self._progress = Progress(0, 1)
         self._coming: Any = None
         self._frames = 0
-        self._theme = theme
+        self._theme, self._size = theme, size
         self._drawn: Hashable = None
 
     def __enter__(self) -> Compiling:
@@ -217,9 +219,9 @@ class Compiling:
         self._drawn = wanted
         share, done, total = progress.share, progress.done, progress.total
         if self._frames:
-            draw_waiting(canvas, self._theme, share, f"{done} of {total} parts, {seconds} s")
+            draw_waiting(canvas, self._theme, share, f"{done} of {total} parts, {seconds} s", self._size)
         else:
-            draw_progress(canvas, self._theme, share, f"{done} of {total} parts")
+            draw_progress(canvas, self._theme, share, f"{done} of {total} parts", self._size)
         self._display.show()
 
     def advance(self, theme: Theme, corner: tuple[int, int] | None = None, size: int = 12) -> None:
@@ -229,7 +231,7 @@ class Compiling:
         given, in letters of a ``size`` [px].
         """
         self._frames += 1
-        self._theme = theme
+        self._theme, self._size = theme, size
         pending = self.scenes.pending()
         if self._warmup is not None and not self._warmup.finished:
             self._progress = self._warmup.poll()

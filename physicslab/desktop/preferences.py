@@ -4,7 +4,13 @@ import json
 import os
 from pathlib import Path
 
-from physicslab.desktop.appearance import UNREADABLE, chosen_language, chosen_theme, read_preferences
+from physicslab.desktop.appearance import (
+    UNREADABLE,
+    chosen_language,
+    chosen_scale,
+    chosen_theme,
+    read_preferences,
+)
 from physicslab.ecs.text import printable
 from physicslab.files.replace import rename_over, replace_file
 from physicslab.view.canvas.drawable_text import encodable
@@ -13,8 +19,6 @@ from physicslab.view.window.desk import LEVELS
 from physicslab.view.window.recent import RecentFiles
 from physicslab.view.window.window import Window
 
-_MIN_SCALE, _MAX_SCALE = 0.5, 3.0
-"""The sizes of text that are taken from a file, as shares of the usual."""
 _MAX_ARRANGEMENT = 100_000
 """Characters that are taken of where panels are."""
 _UNREADABLE = ".unreadable"
@@ -34,9 +38,8 @@ def load_preferences(path: Path, window: Window) -> None:
         _put_aside(path, window, error)
         return
     window.theme, window.language = chosen_theme(found), chosen_language(found)
-    scale, level, panels = found.get("text"), found.get("level"), found.get("panels")
-    if isinstance(scale, int | float) and _MIN_SCALE <= scale <= _MAX_SCALE:
-        window.text_scale = float(scale)
+    level, panels = found.get("level"), found.get("panels")
+    window.text_scale = chosen_scale(found, window.text_scale)
     if isinstance(level, str) and level in LEVELS:
         window.level = level
     window.welcomed = found.get("welcomed") is True

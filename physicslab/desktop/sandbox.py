@@ -316,6 +316,7 @@ class Sandbox:
         else:
             self._owed = 0.0
             self._let_go_of_what_none_holds()
+            self.window.hand.pull(self.world, dt)
             history.step(dt)
 
     def _step_again(self, dt: float) -> None:

@@ -131,7 +131,7 @@ def run_window(
     try:
         with Termination(ask_to_leave) as termination:
             try:
-                with Compiling(display, workers, window.theme) as compiling:
+                with Compiling(display, workers, window.theme, window.drawing.size) as compiling:
                     window.has_kernels = partial(getattr, compiling, "finished")
                     with loading():
                         # Time spent waiting for a kernel is no time that steps took.

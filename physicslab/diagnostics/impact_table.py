@@ -17,6 +17,7 @@ from typing import Any, TextIO
 import numpy as np
 from numpy.typing import NDArray
 
+from physicslab.contacts.report import ImpactReader
 from physicslab.diagnostics.table_rows import TableRows
 from physicslab.ecs.text import table_cell
 from physicslab.kernels.constraint.impact_law import ENERGETIC, LOWERED, NEWTON
@@ -37,12 +38,6 @@ for _name in IMPACT.names or ():
         _NEITHER[_name] = np.nan
 _STICKS = 1e-9
 """Share of the speeds of an impact up to which an approach, or the sliding after it, is treated as zero."""
-_GROWS_FROM = 0.25
-"""Share of the ring that is filled between two readings from which on it is doubled."""
-_MAX_RING = 1_600_000
-"""Largest number of impacts in the ring."""
-_BLOCK = 65_536
-"""Rows that are computed at a time."""
 
 type Floats = NDArray[np.float64]
 """A float64 array, of impacts (n,)."""
@@ -201,44 +196,6 @@ _HEADER = (
 )  # fmt: skip
 
 
-class ImpactReader:
-    """Reads every impact of a world, from now on, out of its ring; which is doubled where it fills up fast.
-
-    Parameters
-    ----------
-    state : State
-        Whose impacts; they are logged while ``state.contacts.read`` is true.
-
-    Attributes
-    ----------
-    lost : int
-        How many were overwritten in the ring before they could be read.
-    """
-
-    def __init__(self, state: State) -> None:
-        self._state, self.lost = state, 0
-        self.skip()
-
-    def skip(self) -> None:
-        """Begin with those that come."""
-        self._next = int(self._state.contacts.logged)
-
-    def read(self) -> Iterator[NDArray[Any]]:
-        """Yield the impacts since the last call, arrays of IMPACT (n,) in the order of the log."""
-        contacts = self._state.contacts
-        logged, ring = int(contacts.logged), len(contacts.log)
-        new = logged - self._next
-        if new <= 0:
-            return
-        oldest = max(self._next, contacts.first_logged)
-        self.lost += oldest - self._next
-        for first in range(oldest, logged, _BLOCK):
-            yield contacts.impacts_since(first, _BLOCK)
-        self._next = logged
-        if new > _GROWS_FROM * ring and ring < _MAX_RING:
-            contacts.lengthen_log(2 * ring)
-
-
 def impact_table(state: State, records: NDArray[Any]) -> dict[str, NDArray[Any]]:
     """Return what a person wants to know of impacts, by name; arrays (n,) in SI units.
 
@@ -295,7 +252,7 @@ class ImpactTableWriter:
 
     def write(self) -> None:
         """Write the impacts since the last call."""
-        for records in self._reader.read():
+        for records in self._reader.blocks(self._state):
             self._rows.write(_rows(self._state, records, self._last))
             self.rows += len(records)
 

@@ -14,9 +14,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from physicslab.contacts.report import ImpactReader
 from physicslab.diagnostics.energy import Booked, measure_energy, read_books
 from physicslab.diagnostics.figures import Figures
-from physicslab.diagnostics.impact_table import NO_IMPACTS, ImpactReader, impact_table
+from physicslab.diagnostics.impact_table import NO_IMPACTS, impact_table
 from physicslab.diagnostics.run_report import body_names
 from physicslab.diagnostics.samples import Record, quoted
 from physicslab.ecs.component import COMPONENTS
@@ -89,7 +90,7 @@ def _recorded(
     finest = 1 if world.schedule.samplers else stride
     world.samples = samples = Samples(world, world.time, length.dt, finest, length.steps)
     for _ in strides_as_it_goes(world, length, lambda: _stride(world), math.inf):
-        records += reader.read()
+        records += reader.blocks(world)
     if reader.lost:
         _log.warning("record: %d impacts were not kept, more than the log holds", reader.lost)
     return _thinned(world, samples, stride // finest)
@@ -161,11 +162,11 @@ class _Watch:
                 self._go_back(kept)
                 if steps:
                     world.run(steps=steps)
-                    self._records += self._reader.read()
+                    self._records += self._reader.blocks(self._world)
                     kept = Keyframe(world)
                 found = self._locate(kept, float(every.times[first]) - world.time)
                 every.count = first
-            self._records += self._reader.read()
+            self._records += self._reader.blocks(self._world)
             done, ahead = done + count, min(2 * ahead, most)
         world.samples = None
         return _thinned(world, every, stride), found

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components.quantities import QUANTITIES, carrier_of, why_not_of
-from physicslab.diagnostics.impact_table import ImpactReader
+from physicslab.contacts.report import ImpactReader
 from physicslab.diagnostics.quantities import Reading
 from physicslab.ecs.quantity_text import Expression, InvalidText
 from physicslab.ecs.text import suggestion
@@ -161,7 +161,7 @@ class Record:
     def _note_impacts(self) -> None:
         """Note when impacts were since the last time, and the motion before and after each."""
         own = [body for _, body in self._sources if body is not None]
-        for records in self._impacts.read():
+        for records in self._impacts.blocks(self._world):
             joints, entities = self._world.joints.joints, self._world.entity_index.entities
             held = {int(entities[row]) for joint in joints for row in (joint.a, joint.b)}
             whole = len(own) < len(self._sources) or not held.isdisjoint(own)

@@ -215,8 +215,7 @@ class EntityIndex:
         """Return a component's table; one of blank rows where no entity has the component."""
         table = self.tables.get(component)
         if table is None:
-            table = self.tables[component] = Table(component, self.capacity)
-            table.resize(len(self), self.capacity)
+            table = self.tables[component] = Table(component, self.capacity, len(self))
         return table
 
     def has_any(self, component: type[Any]) -> bool:
@@ -225,9 +224,12 @@ class EntityIndex:
         return table is not None and bool(table.handles)
 
     def batch(self, *components: type[Any]) -> Batch:
-        """Return the rows whose entity has every one of ``components``."""
+        """Return the rows whose entity has every one of ``components``; no table is made for one without."""
         batch = self._batches.get(components)
         if batch is None:
-            batch = Batch.of([self.table(component) for component in components], self.entities)
+            if all(map(self.has_any, components)):
+                batch = Batch.of([self.table(component) for component in components], self.entities)
+            else:
+                batch = Batch(np.zeros(0, np.int64), np.zeros(0, np.int64))
             self._batches[components] = batch
         return batch

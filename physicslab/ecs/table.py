@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from functools import cache, lru_cache
 from typing import Any
 
 import numpy as np
@@ -41,25 +41,20 @@ class Table:
     one ``block`` of memory.
     """
 
-    def __init__(self, component: type[Any], capacity: int) -> None:
+    def __init__(self, component: type[Any], capacity: int, rows: int = 0) -> None:
         self.component: type[Component] = component
         self.handles: dict[int, Component] = {}
-        self.present: NDArray[np.bool_] = np.zeros(0, np.bool_)
-        self._names: list[str] = []
-        self._storage: list[NDArray[Any]] = []
-        self._views: list[Any] = []
-        self._columns: dict[str, NDArray[Any]] = {}
+        self._names, kinds = list[str](), list[Kind]()
         for spec in self.component.FIELDS:
             self._names.append(spec.name)
-            shape = (0, 2) if spec.kind == "vector" else (0,)
-            self._storage.append(np.zeros(shape, _DTYPES[spec.kind]))
+            kinds.append(spec.kind)
             if spec.derived:
                 self._names.append(f"{spec.name}_given")
-                self._storage.append(np.zeros(0, np.bool_))
-        self._present = self.present
-        self.block: NDArray[np.uint8] = np.zeros(0, np.uint8)
-        self._zeros = [[column.dtype.type(0).item()] * column.ndim for column in self._storage]
-        self.resize(0, capacity)
+                kinds.append("flag")
+        self._kinds = tuple(kinds)
+        self._views: list[Any] = []
+        self._take(capacity)
+        self.resize(rows, capacity)
 
     def __getitem__(self, name: str) -> NDArray[Any]:
         return self._columns[name]
@@ -72,11 +67,22 @@ class Table:
     def resize(self, rows: int, capacity: int) -> None:
         """Use the first ``rows`` rows, with room for ``capacity``."""
         if capacity > len(self._present):
-            self.block, (self._present, *self._storage) = _grown((self._present, *self._storage), capacity)
-            # Handles share this list, so replacing its items moves every one of them to the new memory.
-            self._views[:] = [memoryview(column.reshape(-1)) for column in self._storage]
-        self.present = self._present[:rows]
+            before = self._present, *self._storage
+            self._take(capacity)
+            for column, values in zip((self._present, *self._storage), before, strict=True):
+                column[: len(values)] = values
+        self.present: NDArray[np.bool_] = self._present[:rows]
         self._columns = {name: column[:rows] for name, column in zip(self._names, self._storage, strict=True)}
+
+    def _take(self, capacity: int) -> None:
+        """Take memory for ``capacity`` rows, all zero."""
+        size, places = _layout(self._kinds, capacity)
+        self.block: NDArray[np.uint8] = np.zeros(size, np.uint8)
+        columns: list[NDArray[Any]]
+        columns = [np.ndarray(shape, dtype, self.block, start) for dtype, shape, start in places]
+        self._present, self._storage = columns[0], columns[1:]
+        # Handles share this list, so replacing its items moves every one of them to the new memory.
+        self._views[:] = [memoryview(column.reshape(-1)) for column in self._storage]
 
     def adopt(self, entity: int, handle: Component, row: int) -> None:
         """Move a detached component's values into ``row``; from here on the handle is a view of it."""
@@ -123,7 +129,7 @@ class Table:
     def blank(self) -> Component:
         """Return a component of no entity, whose values are all zero: it is adopted before any is written."""
         made: Component = Component.__new__(self.component)
-        made._views = self._zeros
+        made._views = _zeros(self._kinds)
         made._row = 0
         return made
 
@@ -157,18 +163,29 @@ def as_slice(rows: NDArray[np.int64]) -> Any:
     return slice(first, end) if end - first == len(rows) and (np.diff(rows) == 1).all() else rows
 
 
-def _grown(
-    columns: Sequence[NDArray[Any]], capacity: int
-) -> tuple[NDArray[np.uint8], list[NDArray[Any]]]:  # fmt: skip
-    """Return one block of memory for ``capacity`` rows, and columns in it with what columns have now."""
-    shapes = [(capacity, *column.shape[1:]) for column in columns]
-    sizes = [math.prod(shape) * column.itemsize for shape, column in zip(shapes, columns, strict=True)]
-    ends = np.cumsum([-(-size // _LINE) * _LINE for size in sizes]).tolist()
-    block, larger = np.zeros(ends[-1], np.uint8), list[NDArray[Any]]()
-    for column, shape, size, start in zip(columns, shapes, sizes, (0, *ends[:-1]), strict=True):
-        larger.append(block[start : start + size].view(column.dtype).reshape(shape))
-        larger[-1][: len(column)] = column
-    return block, larger
+@lru_cache(1024)
+def _layout(kinds: tuple[Kind, ...], capacity: int) -> tuple[int, list[tuple[type, tuple[int, ...], int]]]:
+    """Return the size of a block for ``capacity`` rows [bytes]; type, shape and first byte of each column.
+
+    The first column says where the component is present. Tables of one component are mostly of one size,
+    those of all worlds together.
+    """
+    size, places = 0, list[tuple[type, tuple[int, ...], int]]()
+    for dtype, width in ((np.bool_, 1), *((_DTYPES[kind], _width(kind)) for kind in kinds)):
+        places.append((dtype, (capacity, width) if width > 1 else (capacity,), size))
+        size += -(-capacity * width * np.dtype(dtype).itemsize // _LINE) * _LINE
+    return size, places
+
+
+@cache
+def _zeros(kinds: tuple[Kind, ...]) -> list[list[Any]]:
+    """Return what columns of ``kinds`` hold in a blank row, in the form of a detached component's values."""
+    return [[np.zeros(1, _DTYPES[kind]).item()] * _width(kind) for kind in kinds]
+
+
+def _width(kind: Kind) -> int:
+    """Return how many numbers a row of a column has."""
+    return 2 if kind == "vector" else 1
 
 
 @dataclass(frozen=True, slots=True)

@@ -100,7 +100,7 @@ class History:
         self.world, self.start = world, world.time
         self._places, self._branches = Places(world, budget), Branches()
         self._end = 0
-        self._divided = False
+        self._divided = self._own = False
 
     # ---- doing ---------------------------------------------------------------------------------------------
 
@@ -168,34 +168,36 @@ class History:
             self._run().add_step(float(h), places.digester.digest(world))
             self._advance(began)
 
-    def divide(self) -> None:
-        """Let the next step or write begin another run: undo takes back what comes from now on by itself."""
-        self._divided = True
+    def divide(self, *, own: bool = False) -> None:
+        """Let the next step or write begin another run: undo takes back one of its ``own`` by itself."""
+        self._divided, self._own = True, own
 
     # ---- going through -------------------------------------------------------------------------------------
 
     def undo(self, *, runs: bool = True) -> str | None:
         """Undo the last edit or run before the present place; return its words, ``None`` if none is.
 
-        In the middle of a run, its beginning is taken back. Without ``runs``, a run in
-        which nothing was written is taken back together with the edit before it, if there is one.
+        In the middle of a run, its beginning is taken back. Without ``runs``, a run that merely went on
+        after an edit is taken back together with it; one of its own (:meth:`divide`) is taken back by itself.
         """
         places, line = self._places, self._places.line
         places.mend()
         if places.here == 0:
             return None
         entry = line.entry_at(places.here - 1) if runs else line.last_by_hand(places.here)
+        start, here = line.start_of(entry), places.here
         words = line.entries[entry].words
-        if not (runs or line.entries[entry].by_hand):
-            words = run_in_words(line.steps_before(places.here), line.seconds_before(places.here))
-        places.go(line.start_of(entry))
+        if isinstance(line.entries[entry], Run):
+            steps = line.steps_before(here) - line.steps_before(start)
+            words = run_in_words(steps, line.seconds_before(here) - line.seconds_before(start))
+        places.go(start)
         self._end = places.here
         return words
 
     def redo(self, *, runs: bool = True) -> str | None:
         """Redo the edit or run after the present place; return its words, ``None`` if there is none.
 
-        Without ``runs``, together with the runs after it in which nothing was written.
+        Without ``runs``, together with the runs that merely went on after it.
         """
         places, line = self._places, self._places.line
         places.mend()
@@ -374,8 +376,8 @@ class History:
         self._cut()
         entries = self._places.line.entries
         if not entries or not isinstance(entries[-1], Run) or self._divided:
-            self._places.line.add(Run())
-        self._divided = False
+            self._places.line.add(Run(own=self._own))
+        self._divided = self._own = False
         run = entries[-1]
         assert isinstance(run, Run)
         return run

@@ -54,6 +54,8 @@ class Run:
         How many there are.
     seconds : float
         How long the run took [s].
+    own : bool
+        Whether it was begun by itself, as from a pause, and does not merely go on after an edit.
     """
 
     pieces: list[Piece] = field(default_factory=list)
@@ -61,6 +63,7 @@ class Run:
     ticks: int = 0
     steps: int = 0
     seconds: float = 0.0
+    own: bool = False
     _ticks_before: list[int] = field(default_factory=list)
     _steps_before: list[int] = field(default_factory=list)
 
@@ -71,8 +74,8 @@ class Run:
 
     @property
     def by_hand(self) -> bool:
-        """Whether anything was written in it."""
-        return any(not isinstance(piece, Steps) for piece in self.pieces)
+        """Whether it was begun by itself, or anything was written in it."""
+        return self.own or any(not isinstance(piece, Steps) for piece in self.pieces)
 
     def words_after(self, tick: int) -> str:
         """Return what comes after the first ``tick`` ticks, in plain English."""
@@ -148,7 +151,7 @@ class Run:
 
     def head(self, ticks: int) -> Run:
         """Return a run of the first ``ticks`` ticks."""
-        made = Run()
+        made = Run(own=self.own)
         for piece in self.between(0, ticks):
             if isinstance(piece, Steps):
                 made.add_steps(piece.dt, piece.count)
@@ -205,12 +208,12 @@ class Line:
         return bisect_right(self._ticks_before, tick) - 1
 
     def last_by_hand(self, tick: int) -> int:
-        """Return the number of the last entry begun before ``tick`` that is no mere run; 0 if each is one."""
+        """Return the number of the last entry begun before ``tick`` that was done by hand; 0 if none was."""
         k = self.entry_at(tick - 1)
         return next((n for n in range(k, 0, -1) if self.entries[n].by_hand), 0)
 
     def next_by_hand(self, tick: int) -> int:
-        """Return the number of the first entry begun after ``tick`` that is no mere run, or of none."""
+        """Return the number of the first entry begun after ``tick`` that was done by hand, or of none."""
         k = self.entry_at(tick) + 1
         return next((n for n in range(k, len(self.entries)) if self.entries[n].by_hand), len(self.entries))
 

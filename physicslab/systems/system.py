@@ -15,6 +15,7 @@ from physicslab.ecs.sentences import listed, sentence
 from physicslab.ecs.vector import Vector2
 from physicslab.kernels.accounts import FIELDS
 from physicslab.kernels.forces.force_calls import add_forces
+from physicslab.languages.sentence import Sentence
 from physicslab.state.packed import PackedForce, StateLayout
 from physicslab.state.state import State
 
@@ -118,8 +119,7 @@ class System:
         """Return why this scene does not need the system, or ``None`` if it does."""
         if self.needs and not len(state.batch(*self.needs)):
             absent = [needed for needed in self.needs if not len(state.batch(needed))] or self.needs
-            names = listed("and", (needed.__name__ for needed in absent))
-            return sentence("no_component", components=names)
+            return _absent(tuple(needed.__name__ for needed in absent))
         return None
 
     def kernels_for(self, state: State) -> tuple[Any, ...]:
@@ -178,6 +178,12 @@ class System:
                     both = f"{found[stage]} and {name}"
                     raise TypeError(f"{cls.__name__}: {both} are both at {stage}; let one call the other")
         return found
+
+
+@cache
+def _absent(components: tuple[str, ...]) -> Sentence:
+    """Return the reason for a system whose components no entity has; a small world has a dozen of them."""
+    return sentence("no_component", components=listed("and", components))
 
 
 class ForceSystem(System):

@@ -285,7 +285,7 @@ CONTACT_STEP = 1.0 / 60.0
 _NEAR, _FAR, _SHARE = 10.0, 100.0, 0.95
 """Within what factor of the estimate true errors are to be, how much larger they may ever be, and how often
 they are to be as near."""
-_OF_ROUNDING = 1e-12
+OF_ROUNDING = 1e-12
 """An estimate up to this is one of what rounding adds up to, and the sum may by chance be far less."""
 
 
@@ -320,7 +320,7 @@ class TrustRow:
         """Whether the error is within a factor of 10 of the estimate, or less where both are of rounding."""
         if self.estimate is None or self.ratio is None:
             return False
-        return self.ratio <= _NEAR and (self.ratio >= 1.0 / _NEAR or self.estimate <= _OF_ROUNDING)
+        return self.ratio <= _NEAR and (self.ratio >= 1.0 / _NEAR or self.estimate <= OF_ROUNDING)
 
 
 @dataclass(frozen=True, slots=True)

@@ -25,6 +25,12 @@ type Rect = tuple[int, int, int, int]
 """Left, top, width, height [px]."""
 
 
+def text_height(window: tuple[int, int], scale: float) -> int:
+    """Return how high text is [px]: larger in a larger ``window`` [px], times a chosen ``scale``."""
+    width, height = window
+    return round(min(max(min(height / 48, width / 80), 12), 20) * scale)
+
+
 def is_within(place: tuple[float, float], rect: Rect) -> bool:
     """Whether a place lies in a rectangle [px]."""
     left, top, width, height = rect

@@ -81,6 +81,15 @@ def without_rounding(value: float, scale: float) -> float:
     return value if not abs(value) <= ROUNDING * scale or math.isinf(scale) else 0.0
 
 
+def vector_without_rounding(value: Vector2, scale: float) -> Vector2:
+    """Return a vector, each component of which is zero where it is rounding beside ``scale``.
+
+    >>> vector_without_rounding(Vector2(2.0, -3e-16), 2.0)
+    Vector2(x=2.0, y=0.0)
+    """
+    return Vector2(*(without_rounding(part, scale) for part in value))
+
+
 def rounded_up(at_least: float, slack: float = 0.0) -> float:
     """Return the smallest 1, 2 or 5 times a power of ten that is at least so large, but for a share.
 

@@ -50,7 +50,7 @@ def toggle_pause(world: World, window: Window) -> None:
         return
     window.pace.toggle_pause()
     if window.hand.entity is None:  # what the hand does goes on, and is one act
-        window.edits.history.divide()
+        window.edits.history.divide(own=not window.pace.paused)
     if not window.pace.paused:
         window.error = ""
 
@@ -252,7 +252,7 @@ def _told(words: str, what: str) -> Sentence:
 
 
 def undo(world: World, window: Window) -> None:
-    """Undo the last edit, and the run since; where there is none, the run."""
+    """Undo the last edit with what merely went on after it, or the run since a pause."""
     window.pause_for_history(world)
     words = window.edits.history.undo(runs=False)
     if words is None and window.scenes.left is not None and window.lesson is None:
@@ -352,8 +352,7 @@ def next_branch(world: World, window: Window) -> None:
 
 def save_recording(world: World, window: Window) -> None:
     """Keep what was done as a file that ``physicslab replay`` plays, where the program was started."""
-    window.hand.drop(world)
-    window.edits.keep()
+    window.put_down(world)
     paths = new_paths(Path.cwd(), file_stem(name_of(world, window)), RECORDING_ENDING)
     try:
         path = next(path for path in paths if not path.exists())

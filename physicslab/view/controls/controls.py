@@ -176,7 +176,7 @@ CONTROLS: tuple[Control, ...] = (
     Control("Menu", "menu of a thing", "menu", open_context, also=("shift+f10",),
             tip="What can be done with what is under the cursor; as the right button does, held"),
     Control("Ctrl+Z", "undo", "ctrl+z", actions.undo, group="edit",
-            tip="Undo the last edit, and the run since"),
+            tip="Undo one thing: the last edit, the last throw, or the run since Play"),
     Control("Ctrl+Y", "redo", "ctrl+y", actions.redo, also=("ctrl+shift+z",), group="edit",
             tip="Redo what was undone"),
     _switch("U", "history", "u", "lists_history", "edit", "The list of all edits, runs and branches"),

@@ -89,7 +89,13 @@ def _put(world: World, window: Window, drawn: Drawn, place: Vector2) -> None:
     sketch = window.sketch
     closes, given = drawn.is_open and is_closed(window, place), drawn.measure.given(sketch.typed)
     if not closes:
-        sketch.grips.append(grip_at(world, drawn, window, place))
+        grip = grip_at(world, drawn, window, place)
+        if drawn.refuses is not None and (reason := drawn.refuses(world, grip)):
+            window.notify(reason, 5.0, failed=True)
+            if not sketch.grips:
+                sketch.cancel()
+            return
+        sketch.grips.append(grip)
     sketch.begin, sketch.typed, sketch.stroke = window.pointer, "", []
     if drawn.pours and sketch.held:
         return
@@ -161,7 +167,7 @@ def _build(
         refused = "" if checked else refused_place(world, outlines_through(drawn, places, recipe))
         made = [] if refused else _commands(drawn, places, window, recipe, given)
     except InvalidValue as error:
-        refused = f"{error.field} must be {error.allowed}"
+        refused = Sentence(f"{error.field} = {error.value}: must be {error.allowed}")
     except ValueError as error:  # no outline
         refused = str(error)
     if refused:

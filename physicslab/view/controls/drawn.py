@@ -10,6 +10,7 @@ from physicslab.components import Transform
 from physicslab.ecs.component import Component
 from physicslab.ecs.quantity_text import InvalidText
 from physicslab.ecs.vector import Vector2
+from physicslab.view.canvas.keyboard import held_keys
 from physicslab.view.controls.measure import HANGING, LENGTH, Measure
 from physicslab.view.controls.picking import body_at
 from physicslab.view.window.edits import Recipe
@@ -31,6 +32,8 @@ type Build = Callable[[World, Sequence[Vector2], Recipe], None]
 """Makes bodies in a world of their own, through points [m]."""
 type Join = Callable[[World, Window, Sequence[Grip]], Component | str]
 """Returns the joint of points that were put down, or why there is none."""
+type Refuse = Callable[[World, Grip], str]
+"""Returns why a joint cannot have a point; empty where it can."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,6 +50,8 @@ class Drawn:
         How many points make it; 0: as many as are put down until it is closed at the first, or by a stroke.
     build, join : callable, optional
         Makes bodies; or returns the joint of what lies at the points.
+    refuses : callable, optional
+        Returns why a joint cannot have a point, as soon as that is put down; empty where it can.
     measure : Measure
         How its second point follows from numbers.
     ways : tuple of Vector2
@@ -71,6 +76,7 @@ class Drawn:
     points: int = 2
     build: Build | None = None
     join: Join | None = None
+    refuses: Refuse | None = None
     measure: Measure = LENGTH
     ways: tuple[Vector2, ...] = ()
     per_size: Vector2 = Vector2()
@@ -115,7 +121,7 @@ def at_cursor(world: World, drawn: Drawn, window: Window) -> Vector2:
         return place
     first = sketch.grips[-1].place(world)
     way = place - first
-    if pygame.key.get_mods() & pygame.KMOD_SHIFT:
+    if held_keys() & pygame.KMOD_SHIFT:
         way = drawn.measure.rounded(way)
     if sketch.typed:
         try:

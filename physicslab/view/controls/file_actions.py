@@ -7,12 +7,12 @@ from physicslab.ecs.text import printable
 from physicslab.export.film import ENDINGS
 from physicslab.files.listing import is_recording
 from physicslab.files.replace import reason_of
-from physicslab.files.scene import SceneError, file_stem, load_scene
+from physicslab.files.scene import SceneError, load_scene
 from physicslab.languages.sentence import Sentence
 from physicslab.view.controls.lesson_actions import open_lesson
 from physicslab.view.controls.saving import name_of
 from physicslab.view.window.filming import FROM_NOW
-from physicslab.view.window.naming import Naming, free_name, new_paths
+from physicslab.view.window.naming import named_after
 from physicslab.view.window.scenes import Opening, stamp_of
 from physicslab.view.window.window import Window
 from physicslab.world import World
@@ -134,15 +134,15 @@ def toggle_film(world: World, window: Window) -> None:
     filming.choosing = not filming.choosing
     if filming.choosing:
         ending = Path(filming.naming.text).suffix or ENDINGS[0]
-        stem = file_stem(name_of(world, window))
-        filming.naming = Naming(free_name(new_paths(Path.cwd(), stem, ending)))
+        filming.naming = named_after(name_of(world, window), ending)
+    else:
+        window.notify("No film was begun")
 
 
 def begin_film(world: World, window: Window) -> None:
     """Begin the film that was chosen; where it cannot be made, say why."""
     filming = window.filming
-    window.hand.drop(world)
-    window.edits.keep()
+    window.put_down(world)
     path = filming.naming.path((), None, lambda _: ": another name is needed")
     if path is None:
         return

@@ -124,13 +124,22 @@ def _pulley(world: World, window: Window, grips: Grips) -> Made:
 
 def _gear(world: World, window: Window, grips: Grips, name: str = "gear", sense: float = -1.0) -> Made:
     """Return what couples two joints: a gear, whose wheels turn against each other, or a belt (sense 1)."""
-    joints = [_turning(world, grip) for grip in grips]
-    first, second = joints
+    first, second = (_turning(world, grip) for grip in grips)
     if first is None or second is None:
-        return f"A {name} couples two bodies that turn about pins, or slide in slots: pin them first"
+        return _uncoupled(world, *grips, name=name)
     if first.entity == second.entity:
         return f"A {name} couples two different joints"
     return Gear(first.entity, second.entity, ratio=sense * _ratio(world, first, second, grips))
+
+
+def _uncoupled(world: World, *grips: Grip, name: str) -> str:
+    """Return why bodies cannot be coupled; empty where they turn or slide."""
+    turning = all(_turning(world, grip) is not None for grip in grips)
+    return (
+        ""
+        if turning
+        else f"A {name} couples two bodies that turn about pins, or slide in slots: pin them first"
+    )
 
 
 def _turning(world: World, grip: Grip) -> Joint | None:
@@ -182,9 +191,11 @@ JOINTS = (
           join=_pulley, prompts=("Drag from a body to its wheel", "... to the wheel, a point of the world",
                                  "Drag from the other body to its wheel", "... to its wheel")),
     Drawn("gear", "Gear", "click a body on a pin, then another: they turn against each other",
-          join=_gear, prompts=("Click a body on a pin", "... and another")),
+          join=_gear, refuses=partial(_uncoupled, name="gear"),
+          prompts=("Click a body on a pin", "... and another")),
     Drawn("belt", "Belt", "click a body on a pin, then another: they turn the same way",
-          join=partial(_gear, name="belt", sense=1.0), prompts=("Click a body on a pin", "... and another")),
+          join=partial(_gear, name="belt", sense=1.0), refuses=partial(_uncoupled, name="belt"),
+          prompts=("Click a body on a pin", "... and another")),
 )  # fmt: skip
 """All joints that are drawn, in the order of the tools."""
 _DRAWN = {drawn.name: drawn for drawn in JOINTS}

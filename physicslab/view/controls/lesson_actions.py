@@ -28,8 +28,7 @@ def open_lesson(world: World, window: Window, name: str) -> str:
     """
     try:
         lesson = find_lesson(name, window.language)
-        window.hand.drop(world)
-        window.edits.keep()
+        window.put_down(world)
         desk = desk_of(window) if window.lesson is None else window.lesson.desk
         tool = window.tool if window.lesson is None else window.lesson.tool
         find = cache(partial(find_lesson, language=window.language))  # its panel is built in each frame

@@ -11,7 +11,6 @@ from physicslab.export.page import field_words
 from physicslab.files.checks import SceneError
 from physicslab.files.places import find_place
 from physicslab.files.replace import reason_of, replace_file
-from physicslab.files.scene import file_stem
 from physicslab.languages.language import language
 from physicslab.languages.sentence import Sentence
 from physicslab.lessons.blocks import LessonError
@@ -27,7 +26,7 @@ from physicslab.view.controls.lesson_actions import open_lesson
 from physicslab.view.controls.saving import name_of
 from physicslab.view.controls.share_actions import gone_back, span_around, usual_beginning
 from physicslab.view.window.making import Making
-from physicslab.view.window.naming import Naming, free_name, new_paths
+from physicslab.view.window.naming import named_after
 from physicslab.view.window.window import Window
 from physicslab.world import World
 
@@ -48,8 +47,7 @@ def toggle_making(world: World, window: Window) -> None:
     making = window.making
     making.choosing = not making.choosing
     if making.choosing:
-        stem = file_stem(name_of(world, window))
-        making.naming = Naming(free_name(new_paths(Path.cwd(), stem, ".md")))
+        making.naming = named_after(name_of(world, window), ".md")
         making.begins = usual_beginning(window, making.begins)
         if making.quantity not in measurable(world):
             own = language(window.language)
@@ -111,11 +109,10 @@ def make_lesson(world: World, window: Window, over: Path | None = None) -> None:
     """Write the lesson that was chosen, and open it; where it cannot be, say why at what cannot be so."""
     making, naming = window.making, window.making.naming
     making.refused = {}
-    path = naming.path((".md",), over, lambda there: "" if there.is_file() else ": another name is needed")
+    path = naming.path((".md",), over)
     if path is None:
         return
-    window.hand.drop(world)
-    window.edits.keep()
+    window.put_down(world)
     try:
         with gone_back(window, making.begins):
             text = lesson_text(name_bodies(world), making.draft)

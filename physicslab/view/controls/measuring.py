@@ -11,10 +11,11 @@ from physicslab.ecs.vector import Vector2
 from physicslab.history import AddComponent, Command, Group, Remove, RemoveComponent, SetField
 from physicslab.languages.sentence import Sentence
 from physicslab.state.attached import attached_to, place_of
+from physicslab.view.canvas.keyboard import held_keys
 from physicslab.view.controls.measure import LENGTH
 from physicslab.view.controls.picking import centre_near, directions_near, instrument_at, point_at
 from physicslab.view.controls.tool import Tool
-from physicslab.view.overlay.instruments import instrument_of
+from physicslab.view.overlay.instruments import Instrument, instrument_of
 from physicslab.view.window.measuring import Spot, Writing, made
 from physicslab.view.window.window import Action, Window
 from physicslab.world import World
@@ -38,7 +39,7 @@ def _spot(world: World, window: Window, origin: Vector2 | None = None) -> Spot:
     place = window.place
     if origin is not None and place != origin:
         way = place - origin
-        if pygame.key.get_mods() & pygame.KMOD_SHIFT:
+        if held_keys() & pygame.KMOD_SHIFT:
             place = origin + LENGTH.rounded(way)
         elif window.measuring.kind_in_hand is Protractor:
             place = origin + Vector2.from_angle(
@@ -217,12 +218,18 @@ def take_instrument(world: World, window: Window) -> bool:
         return False
     window.selection.take(one.entity, add=window.adding)
     name = point_at(one, window.camera, window.pointer)
-    part = world.component(one.entity, one.kind)
-    free = tuple(n for n in one.kind.POINTS if getattr(part, f"{n}_body") is None or one.kind is Note)
-    names = (name,) if name is not None else free
+    names = (name,) if name is not None else _free_points(world, one)
     if names:
         window.measuring.take(one, names, window.place)
     return True
+
+
+def _free_points(world: World, one: Instrument) -> tuple[str, ...]:
+    """Return the points of an instrument that are on no body; of a note its only one."""
+    part = world.component(one.entity, one.kind)
+    return tuple(
+        name for name in one.kind.POINTS if getattr(part, f"{name}_body") is None or one.kind is Note
+    )
 
 
 def let_instrument_go(world: World, window: Window) -> None:
@@ -237,9 +244,9 @@ def nudged(world: World, entity: int, by: Vector2) -> Command | None:
     one = instrument_of(world, entity)
     if one is None:
         return None
-    part = world.component(entity, one.kind)
-    free = [n for n in one.kind.POINTS if getattr(part, f"{n}_body") is None or one.kind is Note]
-    commands = [SetField(entity, one.kind.__name__, name, getattr(part, name) + by) for name in free]
+    part, kind = world.component(entity, one.kind), one.kind.__name__
+    moved = _free_points(world, one)
+    commands = [SetField(entity, kind, name, getattr(part, name) + by) for name in moved]
     return Group(Sentence("moved {what}", what=world.label(entity)), commands) if commands else None
 
 

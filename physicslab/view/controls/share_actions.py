@@ -13,10 +13,10 @@ from physicslab.ecs.text import printable
 from physicslab.export.page import field_words
 from physicslab.files.places import SECTIONS, entity_names, find_place
 from physicslab.files.replace import reason_of, replace_file
-from physicslab.files.scene import SceneError, file_stem, save_scene
+from physicslab.files.scene import SceneError, save_scene
 from physicslab.stepping.keyframe import Keyframe
 from physicslab.view.controls.saving import name_of
-from physicslab.view.window.naming import Naming, free_name, new_paths
+from physicslab.view.window.naming import named_after
 from physicslab.view.window.sharing import (
     FROM_EDIT,
     FROM_NOW,
@@ -48,9 +48,8 @@ def toggle_sharing(world: World, window: Window) -> None:
     sharing.choosing = not sharing.choosing
     if sharing.choosing:
         lesson = None if window.lesson is None else window.lesson.lesson
-        stem = file_stem(name_of(world, window) if lesson is None else lesson.name)
         sharing.begins = usual_beginning(window, sharing.begins) if lesson is None else WHOLE_LESSON
-        sharing.naming = Naming(free_name(new_paths(Path.cwd(), stem, ".html")))
+        sharing.naming = named_after(name_of(world, window) if lesson is None else lesson.name, ".html")
         _take_sliders(world, window)
 
 
@@ -140,9 +139,7 @@ def span_around(world: World, window: Window, begins: str, path: str) -> tuple[f
 def begin_sharing(world: World, window: Window, over: Path | None = None) -> None:
     """Begin to make the page that was chosen; where it cannot be, say why."""
     sharing, naming = window.sharing, window.sharing.naming
-    path = naming.path(
-        (".html", ".htm"), over, lambda there: "" if there.is_file() else ": another name is needed"
-    )
+    path = naming.path((".html", ".htm"), over)
     if path is None:
         return
     if sharing.begins == WHOLE_LESSON and window.lesson is not None:
@@ -157,8 +154,7 @@ def begin_sharing(world: World, window: Window, over: Path | None = None) -> Non
         slid.refused = "" if form else "must be from : to : how many values, as 1:5:9"
     if naming.refused or any(slid.refused for slid in sharing.slid):
         return
-    window.hand.drop(world)
-    window.edits.keep()
+    window.put_down(world)
 
     def write(scene: Path) -> None:
         begun = World()

@@ -26,7 +26,7 @@ from physicslab.view.controls.spawning import BOX
 from physicslab.view.controls.tool import Tool
 from physicslab.view.controls.tools import TOOLS
 from physicslab.view.window.changing import set_end
-from physicslab.view.window.placing import outlines_of
+from physicslab.view.window.placing import outline_of
 from physicslab.view.window.window import Action, Window
 from physicslab.world import World
 
@@ -355,9 +355,7 @@ def _about(world: World, entity: int) -> Outlines | None:
     """Return the outline of a body, as if its middle were at the origin."""
     if not world.has(entity, Shape):
         return None
-    rows = world.batch(Transform, Shape).rows
-    own = rows[world.entity_index.entities[rows] == entity]
-    return outlines_of(world, own).moved(Vector2() - world.component(entity, Transform).position)
+    return outline_of(world, entity).moved(Vector2() - world.component(entity, Transform).position)
 
 
 def _named(event: pygame.Event) -> tuple[str, str, str]:

@@ -50,8 +50,7 @@ def boxes_of(world: World) -> Boxes:
 
 
 def _reach(world: World, rows: NDArray[np.int64]) -> Boxes:
-    outlines = outlines_of(world, rows)
-    return np.concatenate((outlines.place - outlines.reach, outlines.place + outlines.reach), axis=1)
+    return np.concatenate(outlines_of(world, rows).boxes, axis=1)
 
 
 def _fixed_ends(world: World) -> Boxes:

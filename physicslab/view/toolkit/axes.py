@@ -6,7 +6,9 @@ from collections.abc import Iterator
 from imgui_bundle import imgui, implot
 
 from physicslab.languages.language import Language
+from physicslab.theme import Colour
 from physicslab.view.canvas.quantities import rounded_up
+from physicslab.view.toolkit.style import as_vector
 
 _AXES = 3
 """Axes that a plot may have in each direction."""
@@ -17,6 +19,8 @@ _DECIMALS = 6
 which it is where that is not longer."""
 _APART = (3.5, 1.6)
 """Least distance between ticks across and along, in heights of the text."""
+WEIGHT = 0.13
+"""Width of a line, in heights of the text."""
 
 
 def finish_axes(language: Language) -> list[str]:
@@ -88,3 +92,10 @@ def plot_rect() -> tuple[int, int, int, int]:
     """Return the left, the top, the width and the height of the plot that is built, within its axes [px]."""
     corner, size = implot.get_plot_pos(), implot.get_plot_size()
     return round(corner.x), round(corner.y), round(size.x), round(size.y)
+
+
+def line_look(colour: Colour, weight: float, opacity: float = 1.0) -> implot.Spec:
+    """Return the look of a line so many pixels wide."""
+    spec = implot.Spec()
+    spec.line_color, spec.line_weight = as_vector(colour, opacity), weight
+    return spec

@@ -32,8 +32,8 @@ _ONLY_WHERE_TAKEN = (
     pygame.MOUSEMOTION, pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP, pygame.MOUSEWHEEL, pygame.KEYDOWN,
 )  # fmt: skip
 """Events that Dear ImGui gets only where they are for panels: Tab would go to the first field."""
-_FOR_WINDOWS = (pygame.K_F6, pygame.K_F10, pygame.K_LALT)
-"""Keys that go from panel to panel: they are never for the one that has the others."""
+_FOR_WINDOWS = (*range(pygame.K_F1, pygame.K_F12 + 1), pygame.K_LALT)
+"""Keys that write nothing, but open panels and go from one to the next: they are never for a panel."""
 _FOR_FILES = (pygame.K_n, pygame.K_o, pygame.K_q, pygame.K_s)
 """Keys that are for files of scenes, or quit, while Ctrl is held, whatever is being written."""
 _NOWHERE = -3.0e38

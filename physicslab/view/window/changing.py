@@ -22,29 +22,22 @@ _SIZE = 0.25
 """Radius of a shape that a body is given, half the width of a box [m]."""
 _ABOVE = 1.0
 """How far above a body the spring holds it that it is given [m]."""
+_IN_SPACE: dict[str, type[Component]] = {"Transform": Transform, "Shape": Shape}
+"""Components of which a change may need room."""
 _BY_TOOLS: tuple[type[Component], ...] = (Held, MadeOf)
 """Components that are added and removed by tools alone."""
 
 
-def change_fields(world: World, window: Window, changes: Sequence[SetField]) -> None:
-    """Make one edit of a change to each of the selection, or say why it is refused."""
-    for change in changes:
-        refused = _refused_place(world, change)
+def change_in_place(world: World, window: Window, commands: Sequence[Command], words: str = "") -> None:
+    """Make one edit of commands, or say why one of them cannot give a body its place or its size."""
+    for one in commands:
+        if not isinstance(one, SetField) or one.component not in _IN_SPACE:
+            continue
+        refused = refused_change(world, one.entity, _IN_SPACE[one.component], one.field, one.value)
         if refused:
-            window.notify(f"{change.words(world)}: {refused}", 6.0, failed=True)
+            window.notify(f"{one.words(world)}: {refused}", 6.0, failed=True)
             return
-    window.edits.do_all(changes)
-
-
-def refused_command(world: World, command: Command) -> str:
-    """Return why a command cannot be done where it puts a body; of other commands nothing."""
-    return _refused_place(world, command) if isinstance(command, SetField) else ""
-
-
-def _refused_place(world: World, change: SetField) -> str:
-    """Return why a place or a size cannot be given to a body; of other fields nothing."""
-    kind = next((kind for kind in (Transform, Shape) if kind.__name__ == change.component), None)
-    return "" if kind is None else refused_change(world, change.entity, kind, change.field, change.value)
+    window.edits.do_all(commands, words)
 
 
 # ---- components ----------------------------------------------------------------------------------------

@@ -35,7 +35,7 @@ _PASSES = 4
 _POSED = 1e-7
 """How far joints must let a body move, or turn, for it to be moved in a pause [m or rad]."""
 _PULLED = 0.3
-"""Share of the way to the hand that what joints hold is pulled in a frame, lest what it carries swings."""
+"""Share of the way to the hand that what joints hold is pulled in a step, lest what it carries swings."""
 _THROWN = 0.5
 """Speed [m/s] from which a body that is let go counts as thrown."""
 _MIN_THROW_TIME = 0.03
@@ -240,7 +240,7 @@ class Hand:
             self._path.popleft()
 
     def lead(self, world: World, coming: float, paused: bool) -> None:
-        """Make the body follow.
+        """Make the body follow; one that yields is pulled before each step (:meth:`pull`).
 
         Parameters
         ----------
@@ -260,7 +260,6 @@ class Hand:
         gap = self._path[-1].place - transform.position - grip
         yields = world.component(self.entity, Held).yields
         if coming > 0.0 and yields:
-            self._pull(world, self.entity, grip, gap, coming)
             return
         if coming > 0.0:
             gap = _yielding(world, self.entity, gap / coming, coming) * coming
@@ -276,15 +275,23 @@ class Hand:
             if gap:
                 self._pose(world, self.entity, gap)
 
-    def _pull(self, world: World, entity: int, arm: Vector2, gap: Vector2, coming: float) -> None:
-        """Pull a body that joints hold, by a point at ``arm`` [m] that is a ``gap`` [m] from the hand.
+    def pull(self, world: World, coming: float) -> None:
+        """Pull at a body in the hand that joints hold, for a step of ``coming`` seconds.
+
+        So it follows as well where a frame takes long, and has many steps.
 
         The force would give the point, if it were free, a velocity towards the hand in place of the one that
-        it has. It is no greater than the hand is strong, and what brakes half of that: far from the hand,
+        it has. It is no greater than the hand is strong, and what brakes is half of that: far from the hand,
         too, a body comes to rest. Joints, walls and floors hold as if it were in no hand.
         """
+        entity = self.entity
+        if entity is None or not world.has(entity, Held) or not world.component(entity, Held).yields:
+            return
         world.synchronise()
         row, velocity = world.entity_index.row_of[entity], world.component(entity, Velocity)
+        transform = world.component(entity, Transform)
+        arm = world.component(entity, Held).grip.rotated(transform.angle)
+        gap = self._path[-1].place - transform.position - arm
         inverse, turning = float(world.bodies.inverse_mass[row]), float(world.bodies.inverse_inertia[row])
         across, carried = arm.perpendicular, world.table(Mass)["mass"][joined_rows(world, row)].sum()
         wanted = _limited(gap * (_PULLED / coming), self._config.max_throw_speed)

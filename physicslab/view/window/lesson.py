@@ -209,11 +209,30 @@ class OpenLesson:
         """Return a run that was made to its end."""
         return None if run is None else self._made.get((run.line, case.values))
 
-    def own_cases(self, run: Run) -> list[Case]:
+    def _own_cases(self, run: Run) -> list[Case]:
         """Return the cases of a run that the learner has made with values of their own."""
         return [
             one.case for one in self._made.values() if one.run.line == run.line and one.case.text == "own"
         ]
+
+    def rows(self, part: Compare) -> list[Case]:
+        """Return the cases of a comparison, then those of the learner; one of equal values is listed once."""
+        own = self._own_cases(part.run)
+        shown = {self._values_of(part.run, case) for case in part.rows()} if own else set()
+        other = []
+        for case in own:
+            if (values := self._values_of(part.run, case)) not in shown:
+                shown.add(values)
+                other.append(case)
+        return part.rows(other)
+
+    def _values_of(self, run: Run, case: Case) -> tuple[object, ...]:
+        """Return all that parameters are in a run with a case's values, and what else the case sets."""
+        setup, given = self.lesson.setup, dict(run.case.values) | dict(case.values)
+        scope = setup.values(Case("", tuple(given.items())))
+        found = (scope.named(name) for name in setup.parameters)
+        rounded = tuple(f"{one.value:.12g}" for one in found if one is not None)  # 50 cm are 0.5 m
+        return rounded, frozenset(item for item in given.items() if item[0] not in setup.parameters)
 
     def own_case(self) -> Case:
         """Return the case of the values that are set."""

@@ -5,7 +5,8 @@ from collections.abc import Sequence
 from physicslab.components import Colour, Layer, MadeOf, Mass, Material, Shape
 from physicslab.components.made_of import SUBSTANCES
 from physicslab.ecs.component import Component
-from physicslab.history import AddComponent, Command, RemoveComponent, SetField
+from physicslab.history import AddComponent, Command, SetField
+from physicslab.view.window.changing import take
 from physicslab.view.window.placing import area_of
 from physicslab.view.window.window import Window
 from physicslab.world import World
@@ -83,8 +84,7 @@ def choose_layer(world: World, window: Window, entities: Sequence[int], layer: L
 def _choose(
     world: World, window: Window, entities: Sequence[int], part: Component | None, kind: type[Component]
 ) -> None:
-    if part is not None:
-        window.edits.do_all([AddComponent(entity, part) for entity in entities])
+    if part is None:
+        take(world, window, entities, kind)
     else:
-        held = (entity for entity in entities if world.has(entity, kind))
-        window.edits.do_all([RemoveComponent(entity, kind.__name__) for entity in held])
+        window.edits.do_all([AddComponent(entity, part) for entity in entities])

@@ -8,6 +8,11 @@ from pathlib import Path
 
 from physicslab.ecs.text import printable
 from physicslab.files.replace import reason_of
+from physicslab.files.scene import file_stem
+
+
+def _why_kept(path: Path) -> str:
+    return "" if path.is_file() else ": another name is needed"
 
 
 @dataclass(slots=True)
@@ -40,7 +45,7 @@ class Naming:
             self.text, self.refused, self.replaces = text, "", None
 
     def path(
-        self, endings: tuple[str, ...], over: Path | None, why_kept: Callable[[Path], str]
+        self, endings: tuple[str, ...], over: Path | None, why_kept: Callable[[Path], str] = _why_kept
     ) -> Path | None:
         """Return where the file is to be written; ``None`` if it cannot be: ``refused`` says why.
 
@@ -85,3 +90,8 @@ def new_paths(directory: Path, stem: str, ending: str) -> Iterator[Path]:
 def free_name(paths: Iterable[Path]) -> str:
     """Return the name of the first of some paths at which there is nothing."""
     return next(path.name for path in paths if not os.path.lexists(path))
+
+
+def named_after(what: str, ending: str) -> Naming:
+    """Return the first free name of a file that is called after something, in the working directory."""
+    return Naming(free_name(new_paths(Path.cwd(), file_stem(what), ending)))

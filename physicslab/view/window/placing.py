@@ -38,6 +38,11 @@ def outlines_of(world: World, rows: NDArray[np.int64] | None = None) -> Outlines
     return outlines.outlines_of(world, world.batch(Transform, Shape).rows if rows is None else rows)
 
 
+def outline_of(world: World, entity: int) -> Outlines:
+    """Return the outline of an entity's shape, the only row."""
+    return outlines_of(world, np.array([world.entity_index.row_of[entity]]))
+
+
 def refused_place(world: World, wanted: Outlines) -> str:
     """Return why something cannot be made here; empty where it can."""
     if _is_outside(world, wanted):
@@ -72,7 +77,7 @@ def way_aside(world: World, camera: Camera, wanted: Outlines) -> Vector2:
 
 def way_within(world: World, entity: int, way: Vector2) -> Vector2:
     """Return the part of a way [m] that does not lead a body beyond the walls of the world."""
-    return way + _way_inside(world, outlines_of(world, _row_of(world, entity)).moved(way))
+    return way + _way_inside(world, outline_of(world, entity).moved(way))
 
 
 def _way_inside(world: World, shapes: Outlines) -> Vector2:
@@ -80,7 +85,7 @@ def _way_inside(world: World, shapes: Outlines) -> Vector2:
     bounds = world.physics.bounds
     if bounds is None or not len(shapes.place):
         return Vector2()
-    low, high = (shapes.place - shapes.reach).min(axis=0), (shapes.place + shapes.reach).max(axis=0)
+    low, high = extent_about(shapes)
     below, above = np.array(bounds[:2]) - low, high - np.array(bounds[2:])
     within = np.maximum(below, 0.0) - np.maximum(above, 0.0)
     way = np.where(below + above > 0.0, 0.5 * (below - above), within)
@@ -91,7 +96,7 @@ def meetings(world: World, entities: Sequence[int], reach: float) -> dict[tuple[
     """Return where pairs of bodies meet, or are not farther apart than a length [m]: in the middle there."""
     world.synchronise()
     shapes = outlines_of(world, world.entity_index.rows_of(np.array(entities, np.int64)))
-    low, high = shapes.place - shapes.reach, shapes.place + shapes.reach
+    low, high = shapes.boxes
     return {
         (entities[n], entities[m]): Vector2(
             *(0.5 * (np.maximum(low[n], low[m]) + np.minimum(high[n], high[m]))).tolist()
@@ -114,7 +119,7 @@ def refused_change(world: World, entity: int, kind: type[Component], name: str, 
     try:
         setattr(part, name, value)
         after = _overlapping(world, entity)
-        outside = _is_outside(world, outlines_of(world, _row_of(world, entity)))
+        outside = _is_outside(world, outline_of(world, entity))
     finally:
         setattr(part, name, kept)
     if outside:
@@ -122,29 +127,24 @@ def refused_change(world: World, entity: int, kind: type[Component], name: str, 
     return "it would overlap another body" if after > max(before, _ALLOWED) else ""
 
 
-def _row_of(world: World, entity: int) -> NDArray[np.int64]:
-    return np.array([world.entity_index.row_of[entity]], np.int64)
-
-
 def _overlapping(world: World, entity: int) -> float:
     """Return by how much a body overlaps any other that it can touch [m]; at least 0."""
-    own = _row_of(world, entity)
-    return _deepest(outlines_of(world, own), outlines_of(world, _touched(world, own)))
+    return _deepest(outline_of(world, entity), outlines_of(world, _touched(world, entity)))
 
 
-def _touched(world: World, own: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Return the rows (n,) of all shapes that can touch that of one row (1,)."""
-    rows = solid_rows(world)
-    if own[0] not in rows:  # a medium
+def _touched(world: World, entity: int) -> NDArray[np.int64]:
+    """Return the rows (n,) of all shapes that can touch that of an entity."""
+    rows, own = solid_rows(world), world.entity_index.row_of[entity]
+    if own not in rows:  # a medium
         return rows[:0]
-    rows = rows[rows != own[0]]
-    touched: NDArray[np.int64] = rows[may_touch(world, np.full(len(rows), own[0]), rows)]
+    rows = rows[rows != own]
+    touched: NDArray[np.int64] = rows[may_touch(world, np.full(len(rows), own), rows)]
     return touched
 
 
 def area_of(world: World, entity: int) -> float:
     """Return the area of a body's shape [m^2]; 0 without a shape."""
-    return float(outlines_of(world, _row_of(world, entity)).area[0]) if world.has(entity, Shape) else 0.0
+    return float(outline_of(world, entity).area[0]) if world.has(entity, Shape) else 0.0
 
 
 def _is_outside(world: World, shapes: Outlines) -> bool:
@@ -152,16 +152,14 @@ def _is_outside(world: World, shapes: Outlines) -> bool:
     bounds = world.physics.bounds
     if bounds is None:
         return False
-    low, high = shapes.place - shapes.reach, shapes.place + shapes.reach
+    low, high = shapes.boxes
     beyond = (low < np.array(bounds[:2]) - _ALLOWED) | (high > np.array(bounds[2:]) + _ALLOWED)
     return bool(beyond.any())
 
 
 def free_way(world: World, entity: int, way: Vector2) -> Vector2:
     """Return the part of a way [m] that leads a body no deeper into what cannot move: it slides along it."""
-    row = world.entity_index.row_of[entity]
-    own = outlines_of(world, np.array([row], np.int64))
-    touched = _touched(world, np.array([row], np.int64))
+    own, touched = outline_of(world, entity), _touched(world, entity)
     walls = outlines_of(world, touched[~world.table(Velocity).present[touched]])
     if not len(walls.place) or not world.has(entity, Shape):
         return way
@@ -232,8 +230,8 @@ def extent_about(outlines: Outlines) -> tuple[Numbers, Numbers]:
     """Return the lowest and the highest corner of what shapes take up (2,) [m]; points are at the origin."""
     if not len(outlines.place):
         return np.zeros(2), np.zeros(2)
-    reach = outlines.reach
-    return (outlines.place - reach).min(axis=0), (outlines.place + reach).max(axis=0)
+    low, high = outlines.boxes
+    return low.min(axis=0), high.max(axis=0)
 
 
 def snapped(
@@ -256,14 +254,12 @@ def snapped(
     rows = world.batch(Transform, Shape).rows
     rows = rows[~np.isin(world.entity_index.entities[rows], list(without))]
     others = outlines_of(world, rows)
+    lowest, highest = others.boxes
     near = _NEAR / camera.scale
     step = grid_spacing(camera.scale) / _FINE
     found, marks = [place.x, place.y], []
     for axis in (0, 1):
-        reach = others.reach[:, axis]
-        lines = np.concatenate(
-            (others.place[:, axis] - reach, others.place[:, axis], others.place[:, axis] + reach)
-        )
+        lines = np.concatenate((lowest[:, axis], others.place[:, axis], highest[:, axis]))
         own = np.array((low[axis], 0.0, high[axis]))
         gaps = lines[:, None] - (found[axis] + own)[None, :]
         least = int(np.argmin(np.abs(gaps))) if gaps.size else 0

@@ -13,7 +13,7 @@ from physicslab.ecs.vector import Vector2
 from physicslab.history import History
 from physicslab.theme import DARK, Theme
 from physicslab.view.canvas.camera import Camera, Drawing
-from physicslab.view.canvas.canvas import Canvas
+from physicslab.view.canvas.canvas import Canvas, text_height
 from physicslab.view.overlay.dust import Dust
 from physicslab.view.overlay.forces import Measured
 from physicslab.view.overlay.legend import Overlays
@@ -283,8 +283,7 @@ class Window:
     @property
     def drawing(self) -> Drawing:
         """The canvas, camera and colours; text is larger in a larger window, times the chosen scale."""
-        width, height = self.canvas.size
-        size = round(min(max(min(height / 48, width / 80), 12), 20) * self.text_scale)
+        size = text_height(self.canvas.size, self.text_scale)
         return Drawing(self.canvas, self.glide.shown(self.camera, self.now), self.theme, size)
 
     @property
@@ -384,6 +383,11 @@ class Window:
             lambda command: self.lesson is None or self.lesson.allows(command, history.world),
         )
         self.hand.write = lambda world, command: self.edits.write(command)
+
+    def put_down(self, world: World) -> None:
+        """Let go of what is held, and make an edit of what was shown: the world is written as it is."""
+        self.hand.drop(world)
+        self.edits.keep()
 
     def pause_for_history(self, world: World) -> None:
         """Pause, and let go of what is held or dragged, to go to another place of the history."""

@@ -10,7 +10,13 @@ from physicslab.ecs.text import printable
 from physicslab.ecs.vector import Vector2
 from physicslab.languages.sentence import Sentence
 from physicslab.view.canvas.drawable_text import shortened
-from physicslab.view.canvas.quantities import percentage, quantity, vector_quantity, without_rounding
+from physicslab.view.canvas.quantities import (
+    percentage,
+    quantity,
+    vector_quantity,
+    vector_without_rounding,
+    without_rounding,
+)
 from physicslab.world import World
 
 AGREES = 1e-9
@@ -350,4 +356,4 @@ def _torque(body: Body, collision: Collision) -> float:
 
 def _vector(value: Vector2, scale: float, unit: str) -> str:
     """Return a vector; components that are rounding beside ``scale`` are treated as zero."""
-    return vector_quantity(Vector2(*(without_rounding(part, scale) for part in value)), unit)
+    return vector_quantity(vector_without_rounding(value, scale), unit)

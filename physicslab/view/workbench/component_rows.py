@@ -21,7 +21,7 @@ from physicslab.state.joint_rows import KINDS
 from physicslab.view.canvas.quantities import ROUNDING, without_rounding, without_turns
 from physicslab.view.controls.tool import ICONS
 from physicslab.view.toolkit.ui import Ui
-from physicslab.view.window.changing import change_fields, refused_command, set_end
+from physicslab.view.window.changing import change_in_place, set_end
 from physicslab.view.window.context import Picking
 from physicslab.view.window.plain_numbers import hang, hanging_of, incline, slope_of, way_of
 from physicslab.view.window.window import Window
@@ -221,7 +221,7 @@ class ComponentRows:
                 window.edits.do_all(made)
                 return
             changes = [SetField(entity, name, spec.name, value_of(entity)) for entity in chosen]
-            change_fields(world, window, changes)
+            change_in_place(world, window, changes)
 
         self.window.do_first(change)
 
@@ -276,15 +276,7 @@ class ComponentRows:
 
     def _do(self, commands: Sequence[Command], words: str) -> None:
         """Make one edit, before the click that ended the writing is done; or say why it is refused."""
-
-        def change(world: World, window: Window) -> None:
-            refused = next(filter(None, (refused_command(world, one) for one in commands)), "")
-            if refused:
-                window.notify(refused, 6.0, failed=True)
-            else:
-                window.edits.do_all(commands, words)
-
-        self.window.do_first(change)
+        self.window.do_first(change_in_place, commands, words)
 
 
 def _ends(world: World, entity: int, none: str) -> dict[int | None, str]:

@@ -14,7 +14,13 @@ from physicslab.ecs.sentences import listed
 from physicslab.ecs.vector import Vector2
 from physicslab.languages.sentence import Sentence, proper
 from physicslab.state.account import Momentum
-from physicslab.view.canvas.quantities import percentage, quantity, vector_quantity, without_rounding
+from physicslab.view.canvas.quantities import (
+    percentage,
+    quantity,
+    vector_quantity,
+    vector_without_rounding,
+    without_rounding,
+)
 from physicslab.view.picture.bodies import body_rows
 from physicslab.world import World
 
@@ -178,7 +184,7 @@ class Line:
 def measure_lines(world: World, figures: WorldFigures) -> list[Line]:
     """Return how it moves, and what should not change."""
     momentum, scales = figures.momentum, figures.scales
-    linear = Vector2(*(without_rounding(part, scales["kg m/s"]) for part in momentum.linear))
+    linear = vector_without_rounding(momentum.linear, scales["kg m/s"])
     angular = without_rounding(momentum.angular, scales["kg m^2/s"])
     return [
         *_energy_lines(figures),

@@ -19,7 +19,7 @@ from physicslab.view.controls.lesson_actions import open_lesson
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.toolkit.windows import widget_label
 from physicslab.view.window.window import Window
-from physicslab.view.workbench.thumbnails import OF_LESSON, Known, Source, Thumbnails
+from physicslab.view.workbench.thumbnails import OF_LESSON, Known, Source, Thumbnails, lesson_of
 
 _CARD = (15.0, 14.2)
 """Width and height of a card, in heights of the text."""
@@ -174,9 +174,8 @@ class Gallery:
 
 def _opening(source: Source) -> tuple[Any, ...]:
     """Return the action that opens a scene or a lesson, and what it is given."""
-    if isinstance(source, str) and source.startswith(OF_LESSON):
-        return open_lesson, source.removeprefix(OF_LESSON)
-    return open_from_list, source
+    name = lesson_of(source)
+    return (open_lesson, name) if name else (open_from_list, source)
 
 
 def _build_words(ui: Ui, source: Source, known: Known) -> None:

@@ -9,10 +9,11 @@ from numpy.typing import NDArray
 
 from physicslab.components.quantities import KIND_OF_UNIT, QUANTITIES
 from physicslab.theme import Colour
+from physicslab.view.canvas.keyboard import held_keys
 from physicslab.view.canvas.quantities import ROUNDING, written_unit
 from physicslab.view.controls import dashboard_actions
-from physicslab.view.toolkit.axes import finish_axes, pad_plot, plot_rect
-from physicslab.view.toolkit.style import as_vector, packed
+from physicslab.view.toolkit.axes import WEIGHT, finish_axes, line_look, pad_plot, plot_rect
+from physicslab.view.toolkit.style import packed
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.toolkit.windows import widget_label
 from physicslab.view.window.dashboard import GraphShown
@@ -25,12 +26,10 @@ type _Numbers = NDArray[np.float64]
 type _Drawn = tuple[_Numbers, _Numbers]
 
 _AXES = (implot.ImAxis_.y1, implot.ImAxis_.y2, implot.ImAxis_.y3)
-_WEIGHT = 0.13
-"""Width of a line, in heights of the text."""
 _FAINT = 0.35
 """Opacity of the run before."""
 _POINTS, _OVER = 400, 0.8
-"""Points and opacity of a curve that is fitted."""
+"""Points and opacity of a curve that is fitted; moments have the same opacity."""
 _CLICK = 4.0
 """A press that moves the mouse no further than this [px] is a click; further, it moves the plot."""
 _BELOW = 2.6
@@ -137,7 +136,7 @@ class GraphPlot:
             for is_before, record in ((True, dashboard.before), (False, dashboard.record)):
                 x, y = self._points(graph, line.key, record, is_before=is_before)
                 label = widget_label(name, f"{line.entity}{' before' if is_before else ''}")
-                look = _look(colour, _FAINT if is_before else 1.0, _WEIGHT * ui.size)
+                look = line_look(colour, WEIGHT * ui.size, _FAINT if is_before else 1.0)
                 for part in unbroken(y):
                     is_point = len(y[part]) == 1  # as long as the run has a single moment
                     look.marker = implot.Marker_.circle if is_point else implot.Marker_.none
@@ -153,7 +152,7 @@ class GraphPlot:
         if fitted is not None:
             limits = implot.get_plot_limits()
             x = np.linspace(limits.x.min, limits.x.max, _POINTS)
-            look = _look(ui.theme.text, _OVER, 0.5 * _WEIGHT * ui.size)
+            look = line_look(ui.theme.text, 0.5 * WEIGHT * ui.size, _OVER)
             implot.plot_line(label, x, np.ascontiguousarray(fitted.curve(x)), look)
 
     def _points(self, graph: GraphShown, key: Key, record: Record, *, is_before: bool) -> _Drawn:
@@ -193,7 +192,7 @@ class GraphPlot:
             place: tuple[float, float] | None
             if graph.across is None:
                 place = time, implot.get_plot_limits().y.max
-                spec = _look(colour, 0.8, 1.0)
+                spec = line_look(colour, 1.0, _OVER)
                 spec.flags = implot.ItemFlags_.no_fit
                 implot.plot_inf_lines(f"##moment {n}", np.array([time]), spec)
             else:
@@ -219,7 +218,7 @@ class GraphPlot:
             self._pressed = None
         if imgui.is_mouse_released(0) and self._pressed is not None:
             if math.dist(place, self._pressed) <= _CLICK:
-                dashboard.marks[1 if pygame.key.get_mods() & pygame.KMOD_SHIFT else 0] = time
+                dashboard.marks[1 if held_keys() & pygame.KMOD_SHIFT else 0] = time
             self._pressed = None
         return time
 
@@ -260,7 +259,7 @@ def _draw_point(
             continue
         first = first or (x, y)
         implot.set_axes(implot.ImAxis_.x1, axis_of[line.key])
-        spec = _look(colour, 1.0, 1.5)
+        spec = line_look(colour, 1.5)
         spec.marker, spec.marker_size, spec.flags = implot.Marker_.circle, 4.0, implot.ItemFlags_.no_fit
         implot.plot_scatter(f"##{label} {line.entity}", np.array([x]), np.array([y]), spec)
     return first
@@ -294,9 +293,3 @@ def _heading(ui: Ui, keys: list[Key], room: float = math.inf) -> str:
     written = ", ".join(map(written_unit, units))
     words = f"{min(ways, key=len) if len(names) > 1 else ways[0]} [{written}]"
     return words if names and imgui.calc_text_size(words).x <= room else written
-
-
-def _look(colour: Colour, opacity: float, weight: float) -> implot.Spec:
-    spec = implot.Spec()
-    spec.line_color, spec.line_weight = as_vector(colour, opacity), weight
-    return spec

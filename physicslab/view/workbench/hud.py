@@ -7,9 +7,10 @@ from itertools import product
 from physicslab.diagnostics.warnings import ModelWarning, find_warnings
 from physicslab.languages.sentence import Sentence
 from physicslab.theme import Colour, mixed
-from physicslab.view.canvas.canvas import Rect, TextStyle, overlap
+from physicslab.view.canvas.canvas import Rect, TextStyle, is_within, overlap
 from physicslab.view.controls.actions import has_gravity
 from physicslab.view.controls.share_actions import finish_sharing
+from physicslab.view.controls.tools import TOOLS
 from physicslab.view.controls.tour import follow_tour
 from physicslab.view.overlay import banners
 from physicslab.view.overlay.edges import (
@@ -70,6 +71,7 @@ class Hud:
         self._details: list[figures.Line] = []
         self._windows: list[Rect] = []
         self._said: object = None
+        self._paused: Rect = 0, 0, 0, 0
         self._beside = 0
         self._legend: tuple[object, int] = None, 0
         self.readings: dict[Callable[[World, float], None], float] = {
@@ -263,7 +265,7 @@ class Hud:
         left, width, edge = self._free_strip(at_top=False)
         colour = theme.error if window.notice_failed else theme.notice
         colour = mixed(theme.panel, colour, window.notice_share)
-        paused = "PAUSED" if window.pace.paused else ""
+        paused = "PAUSED" if window.pace.paused and not self._is_drawn_at(self._paused) else ""
         words = (window.error, theme.error), (window.notice, colour), (paused, theme.paused)
         middle, bottom = left + width // 2, min(edge, top + height - numbers)
         messages = banners.lay_out_messages(words, on, round(_MESSAGE_WIDTH * width))
@@ -283,4 +285,14 @@ class Hud:
                     world, on.camera, (middle + way - wide // 2, bottom - high, wide, high)
                 ),
             )
-        return banners.draw_messages(messages, middle + self._beside, top + size // 2, bottom, on)
+        drawn = banners.draw_messages(messages, middle + self._beside, top + size // 2, bottom, on)
+        if paused and len(drawn) == len(messages):
+            x, y, wide, high = drawn[-1]
+            self._paused = x - size, y - size, wide + 2 * size, high + 2 * size
+        return drawn
+
+    def _is_drawn_at(self, rect: Rect) -> bool:
+        """Whether a tool draws at the cursor, in a rectangle [px]."""
+        window = self._window
+        draws = TOOLS[window.sketch.name or window.tool].draws is not None
+        return draws and not window.pointer_on_panel and is_within(window.pointer, rect)

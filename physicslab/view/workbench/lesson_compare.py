@@ -41,7 +41,7 @@ def build_compare(ui: Ui, lesson: OpenLesson, part: Compare, rows_of: Rows) -> N
     domain = condition(own, part.holds.text)
     holds = Sentence("It holds for {domain}", domain=domain)
     ui.faint(Sentence("It holds always") if part.holds.text == "always" else holds)
-    cases = part.rows(lesson.own_cases(part.run))
+    cases = lesson.rows(part)
     rows = [_row(rows_of, lesson, part, case) for case in cases]
     predicted = _predicted(lesson, part)
     flags = imgui.TableFlags_.row_bg | imgui.TableFlags_.sizing_stretch_prop

@@ -11,17 +11,14 @@ from physicslab.ecs.quantity_text import Expression, InvalidText, dotted, evalua
 from physicslab.languages.sentence import Sentence, proper
 from physicslab.lessons.check import Row, unit_of
 from physicslab.lessons.lesson import Compare, Question
-from physicslab.theme import Colour
 from physicslab.view.canvas.quantities import rounded_up, written_unit
-from physicslab.view.toolkit.axes import finish_axes, pad_plot, plot_rect
+from physicslab.view.toolkit.axes import WEIGHT, finish_axes, line_look, pad_plot, plot_rect
 from physicslab.view.toolkit.style import as_vector
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.lesson import Curve, OpenLesson, Trial
 
 _HEIGHT = 11.0
 """Height of a graph, in heights of the text."""
-_WEIGHT = 0.13
-"""Width of a line, in heights of the text."""
 _THIN = 0.6
 """Width of the line of the run as it is beside another case, as a share of that of the case."""
 _DASHES = 40
@@ -73,7 +70,7 @@ def _plot_lines(ui: Ui, lesson: OpenLesson, trial: Trial, curve: Curve, usual: C
     """Build the lines of a graph: those of another case beside the run as it is, which is thin."""
     ui.words += finish_axes(ui.language)
     if usual is not None:
-        look = _look(ui, ui.theme.faint)
+        look = line_look(ui.theme.faint, WEIGHT * ui.size)
         look.line_weight *= _THIN
         implot.plot_line(ui.written(AS_RUN), np.array(usual.x), np.array(usual.y), look)
     x, y = np.array(curve.x), np.array(curve.y)
@@ -84,18 +81,18 @@ def _plot_lines(ui: Ui, lesson: OpenLesson, trial: Trial, curve: Curve, usual: C
             if len(drawn) > 1:
                 values = drawn[:, 1] * factor_of(question.unit)
                 predicted = np.interp(x, drawn[:, 0], values)
-                shade = _look(ui, theme.notice, _SHADE)
+                shade = line_look(theme.notice, WEIGHT * ui.size, _SHADE)
                 shade.fill_color, shade.fill_alpha = as_vector(theme.notice), _SHADE
                 implot.plot_shaded("##gap", x, predicted, y, shade)
-                own = _look(ui, theme.notice)
+                own = line_look(theme.notice, WEIGHT * ui.size)
                 implot.plot_line(ui.written(PREDICTED), drawn[:, 0].copy(), values, own)
-    implot.plot_line(ui.said(MEASURED), x, y, _look(ui, theme.accent))
+    implot.plot_line(ui.said(MEASURED), x, y, line_look(theme.accent, WEIGHT * ui.size))
     for compare in lesson.lesson.compares():
         if compare.name in trial.theory and compare.measured.text == curve.along.text:
             theory = np.array(trial.theory[compare.name])
             dashes = np.linspace(0, len(theory) - 1, min(2 * _DASHES, len(theory))).round().astype(int)
             dashes = dashes[: len(dashes) // 2 * 2]
-            look = _look(ui, theme.text)
+            look = line_look(theme.text, WEIGHT * ui.size)
             look.flags = implot.LineFlags_.segments
             implot.plot_line(ui.written(THEORY), x[dashes], theory[dashes], look)
 
@@ -110,7 +107,7 @@ def plot_compared(ui: Ui, part: Compare, rows: Sequence[tuple[int, Row]], predic
     ui.words += finish_axes(ui.language)
     theory = np.array([row.theory for _, row in rows])
     measured = np.array([row.measured for _, row in rows])
-    gap = _look(ui, ui.theme.error)
+    gap = line_look(ui.theme.error, WEIGHT * ui.size)
     gap.flags = implot.LineFlags_.segments
     both = np.stack([theory, measured], axis=1).ravel()
     implot.plot_line("##gaps", np.repeat(numbers, 2), both, gap)
@@ -121,7 +118,7 @@ def plot_compared(ui: Ui, part: Compare, rows: Sequence[tuple[int, Row]], predic
     ):
         if name == PREDICTED and (predicted is None or rows[0][0] != 1):
             continue
-        look = _look(ui, colour)
+        look = line_look(colour, WEIGHT * ui.size)
         look.marker, look.marker_size = marker, size * ui.size
         look.marker_line_color = as_vector(colour)
         look.marker_fill_color = as_vector(colour, 0.0 if name == THEORY else 1.0)
@@ -162,12 +159,6 @@ def _begin(ui: Ui, name: str, across: str, along: str, flags: int = _FLAGS) -> b
     return True
 
 
-def _look(ui: Ui, colour: Colour, opacity: float = 1.0) -> implot.Spec:
-    spec = implot.Spec()
-    spec.line_color, spec.line_weight = as_vector(colour, opacity), _WEIGHT * ui.size
-    return spec
-
-
 class CurveField:
     """A curve that is drawn with the mouse over a graph, or typed as pairs of numbers."""
 
@@ -196,7 +187,7 @@ class CurveField:
                     ui.said(PREDICTED),
                     points[:, 0] * end / _BINS,
                     points[:, 1].copy(),
-                    _look(ui, ui.theme.notice),
+                    line_look(ui.theme.notice, WEIGHT * ui.size),
                 )
             implot.end_plot()
         self._build_text(ui, part, end)

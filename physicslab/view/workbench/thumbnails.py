@@ -95,7 +95,7 @@ class Thumbnails:
         self.missing, self._runs = False, runs
         if language != self._language:
             self._language = language
-            self._known = {one: known for one, known in self._known.items() if not _is_lesson(one)}
+            self._known = {one: known for one, known in self._known.items() if not lesson_of(one)}
 
     def known(self, source: Source) -> Known | None:
         """Return what is known of a scene; ``None`` for now where it was not read yet, one a frame is."""
@@ -105,7 +105,7 @@ class Thumbnails:
                 tags = *scene.teaches, *scene.tags
                 self._known[source] = Known(scene.title, scene.description, tags, also=scene.search_words)
             elif isinstance(source, str):
-                name = source.removeprefix(OF_LESSON)
+                name = lesson_of(source)
                 own, english = openings(self._language)[name], openings()[name]
                 also = own.needs, *english
                 self._known[source] = Known(own.title, own.text, (LESSON_TAG,), also=also)
@@ -166,7 +166,7 @@ class Thumbnails:
                 world = _world(source)
             except (SceneError, OSError, ValueError):
                 return None
-            moment = SCENES[str(source)].moment if source in SCENES else 1.0 if _is_lesson(source) else 0.0
+            moment = SCENES[str(source)].moment if source in SCENES else 1.0 if lesson_of(source) else 0.0
             movers = world.batch(Transform, Velocity).entities.tolist()
             if len(movers) <= _TRACED and not len(world.batch(Trail)):
                 for entity in movers:
@@ -189,15 +189,16 @@ class Thumbnails:
         return True
 
 
-def _is_lesson(source: Source) -> bool:
-    return isinstance(source, str) and source.startswith(OF_LESSON)
+def lesson_of(source: Source) -> str:
+    """Return the name of a lesson by its source; empty for that of a scene."""
+    is_lesson = isinstance(source, str) and source.startswith(OF_LESSON)
+    return str(source).removeprefix(OF_LESSON) if is_lesson else ""
 
 
 def _world(source: Source) -> World:
     """Return the world of a scene, or of a lesson."""
-    if isinstance(source, str) and source.startswith(OF_LESSON):
-        return find_lesson(source.removeprefix(OF_LESSON)).setup.world()
-    return load_scene(source)
+    name = lesson_of(source)
+    return find_lesson(name).setup.world() if name else load_scene(source)
 
 
 def _name(source: Source) -> str:

@@ -134,7 +134,12 @@ def build_history(ui: Ui, world: World, window: Window) -> None:
     place = left + 0.5 * width + ui.size, top + 0.5 * height + 4.0 * ui.size
     ui.stand_beside("History", "right", 0.3, 8.0)
     with ui.floating("History", place, window.closing_of("lists_history"), docks=True):
-        ui.button("Undo", "Undo the last edit, and the run since (Ctrl+Z)", actions.undo, enabled=done > 0)
+        ui.button(
+            "Undo",
+            "Undo one thing: the last edit, the last throw, or the run since Play (Ctrl+Z)",
+            actions.undo,
+            enabled=done > 0,
+        )
         imgui.same_line()
         ui.button("Redo", "Redo what was undone (Ctrl+Y)", actions.redo, enabled=done < len(entries))
         below = _LINE * (len(history.branches) + 2) * ui.size if history.branches else 0.0

@@ -42,10 +42,17 @@ def _on_slope(friction: float, simulation: SimulationConfig) -> World:
 
 
 def _down_slope(friction: float, t: float) -> dict[str, Pose]:
-    rate = max(0.0, GRAVITY * (math.sin(_SLOPE) - friction * math.cos(_SLOPE)))
-    way, half = 0.5 * rate * t * t, 0.5 * _SIZE
-    x = way * math.cos(_SLOPE) + half * math.sin(_SLOPE)
-    return {"block": (x, half * math.cos(_SLOPE) - way * math.sin(_SLOPE), -_SLOPE)}
+    return {"block": _let_go_on(_SLOPE, friction, 0.5 * _SIZE, t)}
+
+
+def _let_go_on(angle: float, friction: float, half: float, t: float, x: float = 0.0) -> Pose:
+    """Return the pose of a block that slides down a slope, or stays; ``half`` its height [m].
+
+    It was let go over a point at ``x`` of the face, which falls to the right.
+    """
+    s, c = math.sin(angle), math.cos(angle)
+    way, _ = slid(0.0, GRAVITY * (friction * c - s), t)
+    return x + way * c + half * s, half * c - way * s, -angle
 
 
 def _thrown(simulation: SimulationConfig) -> World:
@@ -186,16 +193,19 @@ def _on_corner(width: float, height: float, lean: float, simulation: SimulationC
     """Return a box that stands on its corner at the origin, its centre ``lean`` [rad] off the vertical."""
     world = empty_world(simulation)
     floor(world, friction=2.0)
-    arm, inner = 0.5 * math.hypot(width, height), math.atan(width / height)
-    start = arm * math.sin(lean), arm * math.cos(lean)
-    box(world, start, width=width, height=height, angle=-(inner + lean), friction=2.0, name="box")
+    x, y, angle = _standing(width, height, lean)
+    box(world, (x, y), width=width, height=height, angle=angle, friction=2.0, name="box")
     return world
 
 
-def _pivoted(width: float, height: float, key: str, t: float) -> dict[str, Pose]:
-    lean = number("box_pivot", key)
+def _standing(width: float, height: float, lean: float, x: float = 0.0, y: float = 0.0) -> Pose:
+    """Return the pose of a box on its corner at a point, its centre ``lean`` [rad] off the vertical."""
     arm, inner = 0.5 * math.hypot(width, height), math.atan(width / height)
-    return {"box": (arm * math.sin(lean), arm * math.cos(lean), -(inner + lean))}
+    return x + arm * math.sin(lean), y + arm * math.cos(lean), -(inner + lean)
+
+
+def _pivoted(width: float, height: float, key: str, t: float) -> dict[str, Pose]:
+    return {"box": _standing(width, height, number("box_pivot", key))}
 
 
 _rolling = partial(pose_case, group="rolling")
@@ -268,23 +278,18 @@ def _two_slopes(shape: str, slides: bool, simulation: SimulationConfig) -> World
 
 
 def _slid(shape: str, t: float) -> dict[str, Pose]:
-    poses = {}
-    for name, (angle, friction, at) in _pairs(shape, True).items():
-        s, c = math.sin(angle), math.cos(angle)
-        way, half = max(0.0, 0.5 * GRAVITY * (s - friction * c) * t * t), 0.5 * _BASES[shape][1]
-        poses[name] = at.x + way * c + half * s, half * c - way * s, -angle
-    return poses
+    half, slopes = 0.5 * _BASES[shape][1], _pairs(shape, True)
+    return {name: _let_go_on(angle, mu, half, t, at.x) for name, (angle, mu, at) in slopes.items()}
 
 
 def _toppled(shape: str, t: float) -> dict[str, Pose]:
     """Return the poses of one that stands and one that turns on its lower corner, by its lean on record."""
     width, height = _BASES[shape]
-    arm, inner = 0.5 * math.hypot(width, height), math.atan(width / height)
     poses = {}
     for name, (angle, _, at) in _pairs(shape, False).items():
-        lean = number("topple_threshold", shape) if name == "above" else angle - inner
+        lean = number("topple_threshold", shape) if name == "above" else angle - math.atan(width / height)
         x, y = at.x + 0.5 * width * math.cos(angle), -0.5 * width * math.sin(angle)
-        poses[name] = x + arm * math.sin(lean), y + arm * math.cos(lean), -(inner + lean)
+        poses[name] = _standing(width, height, lean, x, y)
     return poses
 
 

@@ -11,7 +11,7 @@ from physicslab.files.reader import read_scene
 from physicslab.lab.accuracy.honesty import smooth, touching
 from physicslab.lab.accuracy.honesty.scene import KnownScene
 from physicslab.lab.accuracy.paths import differences, run_path
-from physicslab.lab.accuracy.trust import assess, scales
+from physicslab.lab.accuracy.trust import OF_ROUNDING, assess, scales
 from physicslab.lab.accuracy.variants import ROUNDING
 from physicslab.lab.case import attempt
 from physicslab.lab.jobs import Job, scaled
@@ -36,8 +36,6 @@ QUANTITIES = ("position", "velocity", "angle", "spin")
 _HONEST, _FAR = 3.0, 100.0
 """How many times too small an honest estimate may be, and how many times too large one is told."""
 _WANTED = 0.99
-_OF_ROUNDING = 1e-12
-"""Shares up to which an estimate that is far too large is one of what rounding might have added up to."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,7 +123,7 @@ def assess_known(family: str, seed: int) -> Job[HonestRow]:
     estimate, error = float(claimed[0].max()), float(shares[0].max())
     return HonestRow(
         family, seed, tuple((shares / claimed).max(axis=1).tolist()), float(claimed[0, worst]),
-        float(shares[0, worst]), estimate > _OF_ROUNDING and estimate > _FAR * error,
+        float(shares[0, worst]), estimate > OF_ROUNDING and estimate > _FAR * error,
     )  # fmt: skip
 
 
