@@ -348,8 +348,9 @@ def find_contacts(
     now: a pair that meets within it has points with the normal of that moment and the separation, along it,
     of now. Pairs whose count is negative are moved by event-driven stepping, and passed over. ``when`` it is
     says whether records of impacts are cleared, as a step begins, and whether only those pairs without points
-    are looked at of which an impact has changed a body, from its ``sweep`` on. ``speculative_margin`` is how far [m] the forces may
-    bring two bodies together within the substep; ``rest`` more may follow before points are found again.
+    are looked at of which an impact has changed a body, from its ``sweep`` on. ``speculative_margin`` is how
+    far [m] the forces may bring two bodies together within the substep; ``rest`` more may follow before
+    points are found again.
     """
     position, linear, touching = motion.position, motion.linear, near.touching
     found, held, far, first, again = 0, count, 0, when <= GOES_ON, when == AFTER_IMPACTS

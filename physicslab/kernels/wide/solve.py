@@ -40,7 +40,6 @@ _NO_OVERLAP = 1e-9
 """Share that does not count as overlap: rounding may put a corner of a box on a floor below its surface."""
 DEEPER = 0.15
 """Share beyond which overlap is not corrected by impulses."""
-
 _CACHED = 384
 """Blocks up to which they stay in the nearer caches from one sweep to the next."""
 
