@@ -91,7 +91,7 @@ class History:
     >>> history.world.component(ball, Transform).position.x
     0.5
     >>> history.undo(), history.undo(), history.undo()
-    ('ran 2.0 s', 'made a point, ball', None)
+    ('ran 0.5 s', 'made a point, ball', None)
     >>> history.redo(), [entry.words for entry in history.entries]
     ('made a point, ball', ['made a point, ball', 'ran 2.0 s'])
     """

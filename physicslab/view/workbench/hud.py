@@ -71,7 +71,7 @@ class Hud:
         self._details: list[figures.Line] = []
         self._windows: list[Rect] = []
         self._said: object = None
-        self._paused: Rect = 0, 0, 0, 0
+        self._paused: Rect | None = None  # where PAUSED stands
         self._beside = 0
         self._legend: tuple[object, int] = None, 0
         self.readings: dict[Callable[[World, float], None], float] = {
@@ -291,8 +291,10 @@ class Hud:
             self._paused = x - size, y - size, wide + 2 * size, high + 2 * size
         return drawn
 
-    def _is_drawn_at(self, rect: Rect) -> bool:
+    def _is_drawn_at(self, rect: Rect | None) -> bool:
         """Whether a tool draws at the cursor, in a rectangle [px]."""
         window = self._window
+        if rect is None:
+            return False
         draws = TOOLS[window.sketch.name or window.tool].draws is not None
         return draws and not window.pointer_on_panel and is_within(window.pointer, rect)
