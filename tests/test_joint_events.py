@@ -8,7 +8,7 @@ from unittest.mock import patch
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from physicslab import World
@@ -18,6 +18,7 @@ from physicslab.ecs.config import SimulationConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import load_scene, save_scene
 from physicslab.kernels.accounts import CONTACT, ENERGY, HAND, JOINTS, MOTORS, PX
+from physicslab.kernels.rigid.touching import TOUCH
 from physicslab.stepping import rigid_motion
 from physicslab.stepping.accounting import balance_of
 from physicslab.stepping.plan import WITHOUT_END
@@ -46,13 +47,18 @@ def turn(world: World, body: int, spin: float, arm: float = 0.0) -> None:
     world.component(body, Velocity).linear = Vector2(-math.sin(angle), math.cos(angle)) * (spin * arm)
 
 
-def run(world: World, seconds: float) -> None:
-    """Run, and demand that energy and momentum change by what accounts say, to rounding."""
+def run(world: World, seconds: float, put: float = 0.0) -> None:
+    """Run, and demand that energy and momentum change by what accounts say, to rounding.
+
+    Two corners meet in one moment if their gaps differ by less than ``put`` [m], and bodies are moved by that
+    little. No cause does so: it is an error of the method, of at most their weight times that way.
+    """
     world.synchronise()
     booked = world.account.sums.sum(axis=0) - np.array(balance_of(world, world.schedule.forces))
     world.run(seconds=seconds)
     after = world.account.sums.sum(axis=0) - np.array(balance_of(world, world.schedule.forces))
-    assert after == pytest.approx(booked, abs=3e-11)
+    weight = G * float(world.table(Mass)["mass"].sum())
+    assert after == pytest.approx(booked, abs=3e-11 + put * weight)
 
 
 # ---- ropes -------------------------------------------------------------------------------------------------
@@ -324,6 +330,7 @@ def test_a_mass_that_lands_lets_the_other_fly_until_the_rope_is_taut_again() -> 
 
 
 @settings(max_examples=10)
+@example(2, [0.0, 0.0, 0.5, -1.0, 0.0, 0.375] + [0.0] * 18, True, True)  # lands on two corners at once
 @given(
     st.integers(2, 4), st.lists(st.floats(-1.0, 1.0), min_size=24, max_size=24), st.booleans(), st.booleans()
 )
@@ -347,7 +354,7 @@ def test_no_chain_of_ropes_makes_energy_or_grows(
         return world
 
     world = made()
-    run(world, 0.4)
+    run(world, 0.4, put=TOUCH * 0.2 if shaped else 0.0)
     given_in = world.account.sums[MOTORS, ENERGY]
     lost = world.account.sums[[JOINTS, CONTACT], ENERGY]
     assert lost.max() <= 1e-10

@@ -24,8 +24,8 @@ from physicslab.kernels.rigid.joined import strongest_joint
 from physicslab.kernels.rigid.joint_points import OWN, UNIT, gap_of_row, measure
 from physicslab.kernels.rigid.least_norm import solve_equations
 
-_TOUCH = 1e-10
-"""Share of the smaller size within which a gap is closed."""
+TOUCH = 1e-10
+"""Share of the smaller size within which a gap is closed: bodies are moved by that little."""
 _REST = 1e-6
 """Tolerance of speeds, in shares of the speed of a fall over the smallest size."""
 SLOW = 1e-3
@@ -206,7 +206,7 @@ def find_touching(
     count, deepest = 0, 0.0
     for p in range(len(scene.pairs)):
         size = scene.coefficients[p, 2]
-        limit = (_TOUCH + within) * size
+        limit = (TOUCH + within) * size
         if scene.pairs[p, 2] >= F.FIRST_ROW:
             left = 0.0  # of a motor
             if scene.pairs[p, 2] == F.JOINT - F.WALL:
