@@ -15,10 +15,12 @@ from physicslab import cli
 from physicslab.components import Velocity
 from physicslab.ecs.vector import Vector2
 from physicslab.lab.bench import random_scenes
+from physicslab.lab.bench.added import ADDED, measure_added
 from physicslab.lab.bench.catalogue import SCENES, gas_scene, pile_scene
 from physicslab.lab.bench.costs import UNUSED, measure_memory, measure_unused
 from physicslab.lab.bench.engine import Engine, missing_peers
 from physicslab.lab.bench.measure import measure_scene
+from physicslab.lab.bench.moving import funnel
 from physicslab.lab.bench.random_scenes import random_scene
 from physicslab.lab.bench.result import TURN, SceneResult, exponent, growths, take_turns
 from physicslab.lab.bench.scene import BenchScene, Moment, Quality, energy_gained
@@ -117,6 +119,15 @@ def test_what_a_scene_does_not_use_changes_no_bit() -> None:
     assert set(found.left_out) >= {"SpringSystem", "DragSystem", "TrailSystem"}
 
 
+@pytest.mark.parametrize("what", ADDED)
+def test_one_thing_more_is_timed_in_a_crowd_and_far_from_it(what: str) -> None:
+    world = funnel(20)
+    before = len(world.entities())
+    ADDED[what](world)
+    assert len(world.entities()) > before
+    assert result_of(measure_added(what, 20)).ratio > 0.0
+
+
 def test_a_body_takes_memory() -> None:
     memory = measure_memory((50, 200), steps=2)
     assert 0.0 < memory.columns < memory.spawned
@@ -152,7 +163,9 @@ def test_the_document_alone_goes_to_stdout(capsys: pytest.CaptureFixture[str]) -
     out, err = capsys.readouterr()
     assert err == ""
     found = json.loads(out, parse_constant=lambda word: pytest.fail(f"{word} in JSON"))
-    assert list(found) == ["format", "machine", "scenes", "growth", "unused", "bytes_per_body", "targets"]
+    assert list(found) == [
+        "format", "machine", "scenes", "growth", "unused", "added", "bytes_per_body", "targets"
+    ]  # fmt: skip
     assert found["format"] == "physicslab-bench/1"
     assert {"cpu", "python", "numpy", "numba"} <= set(found["machine"])
     assert [scene["name"] for scene in found["scenes"]] == ["pile_5", "pile_10", "pile_20", "circles_10"]

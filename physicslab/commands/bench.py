@@ -14,6 +14,7 @@ from physicslab.commands import FAILED, CommandError, require_window
 from physicslab.commands.lab import LabRun, chosen_cases, list_cases, unknown_name
 from physicslab.ecs.text import printable
 from physicslab.files.checks import shown
+from physicslab.lab.bench.added import ADDED, BODIES, Added, measure_added
 from physicslab.lab.bench.catalogue import PEER_SIZE_LIMIT, SCENES, by_default, opened
 from physicslab.lab.bench.costs import UNUSED, Unused, measure_memory, measure_unused
 from physicslab.lab.bench.engine import PEERS, Engine, missing_peers
@@ -30,7 +31,8 @@ from physicslab.lab.peers.peer import Peer
 from physicslab.scenes import SCENES as BUILT_IN
 from physicslab.world import World
 
-_MEMORY, _UNUSED = "memory", "unused"
+_MEMORY, _UNUSED, _ADDED = "memory", "unused", "added"
+_EXTRAS = _UNUSED, _ADDED, _MEMORY
 _SIZE_LIMITS = {Box2DMirror.title: 2_000}
 """Bodies of the largest scene that an engine runs unless it is named; ``PEER_SIZE_LIMIT`` for others."""
 _UNUSED_SIZE = 1_000
@@ -57,11 +59,14 @@ def execute(arguments: Namespace) -> int:
         return _run_whole(run, arguments, scenes)
     report = BenchReport(arguments.peers)
     with _other_engines(arguments) as peers:
-        results: Iterator[SceneResult | Unused] = run.results(_jobs(scenes, extras, peers, arguments.names))
+        results: Iterator[SceneResult | Unused | Added]
+        results = run.results(_jobs(scenes, extras, peers, arguments.names))
         for found in results:
             if isinstance(found, SceneResult):
                 report.scenes.append(found)
                 _note(run, scene_text(found))
+            elif isinstance(found, Added):
+                report.added.append(found)
             else:
                 report.unused.append(found)
     if _MEMORY in extras:
@@ -94,14 +99,14 @@ def _run_whole(run: LabRun, arguments: Namespace, scenes: list[BenchScene]) -> i
 
 def _opened(extras: list[str], name: str) -> BenchScene | None:
     """Return the built-in scene or the file of a name, or add what else it may name to the extras."""
-    if name in (_UNUSED, _MEMORY):
+    if name in _EXTRAS:
         extras.append(name)
         return None
     if name in BUILT_IN or os.path.exists(name):
         scene = opened(name)
         return replace(scene, name=printable(scene.name), title=printable(scene.title))
     known = f"the groups are {', '.join(SCENES.families)}; built-in scenes and files are taken as well"
-    raise unknown_name(name, "scene", [*SCENES.names, _UNUSED, _MEMORY, *BUILT_IN], known)
+    raise unknown_name(name, "scene", [*SCENES.names, *_EXTRAS, *BUILT_IN], known)
 
 
 def _check_peers() -> None:
@@ -132,9 +137,9 @@ def _other_engines(
 
 def _jobs(
     scenes: list[BenchScene], extras: list[str], peers: tuple[type[Peer], ...], named: list[str]
-) -> list[tuple[float, Job[SceneResult | Unused]]]:
+) -> list[tuple[float, Job[SceneResult | Unused | Added]]]:
     """Return the work, with the bodies of each as how much of the whole it is."""
-    jobs: list[tuple[float, Job[SceneResult | Unused]]] = []
+    jobs: list[tuple[float, Job[SceneResult | Unused | Added]]] = []
     for scene in scenes:
         beside = [
             peer for peer in peers
@@ -147,6 +152,8 @@ def _jobs(
         jobs.append((float(scene.size), measure_scene(scene, beside, make)))
     if _UNUSED in extras:
         jobs += [(float(_UNUSED_SIZE), measure_unused(name, *given)) for name, given in UNUSED.items()]
+    if _ADDED in extras:
+        jobs += [(float(BODIES), measure_added(what)) for what in ADDED]
     return jobs
 
 

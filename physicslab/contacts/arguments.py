@@ -8,6 +8,7 @@ from physicslab.kernels.arguments import ActingTuple, Bounds, Inverse, Materials
 from physicslab.kernels.broad.leaving import FatBoxes, blank_boxes
 from physicslab.kernels.geometry.shapes import ShapesTuple
 from physicslab.kernels.joints.blocks import Joints
+from physicslab.kernels.near_counts import FOLLOWED
 from physicslab.kernels.records import APART, CONSTRAINT, CONSTRAINT_POINT
 from physicslab.kernels.solver import soft
 from physicslab.state.samples import NOTHING_SAMPLED
@@ -136,4 +137,6 @@ def do_stage(
         (0.0, 0.0), fat or blank_boxes(0), bounds_of(state), near, joints_in(state), contacts.opened,
         softness, contacts.impulse_dt, contacts.step_log, np.zeros(soft.COSTS, np.int64), NOTHING_SAMPLED,
     )  # fmt: skip
+    if part == soft.FIND:
+        near[0][FOLLOWED] = 0  # what acts before the next part may change shapes
     return int(why), int(impacts)

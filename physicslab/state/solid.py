@@ -6,11 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Layer, Medium, Shape, Transform
-from physicslab.components.layer import OTHERS, OWN
+from physicslab.kernels import direct_entry
+from physicslab.kernels.broad import filters
 from physicslab.state.state import State
 
-_OWN, _OTHERS = (Layer.FIELDS[1].check(word) for word in (OWN, OTHERS))
-"""How columns store these."""
+_NONE = np.zeros(0, np.int64)
 
 
 def solid_rows(state: State) -> NDArray[np.int64]:
@@ -24,22 +24,20 @@ def is_any_apart(state: State) -> bool:
     return len(state.joints.apart) > 0 or state.entity_index.has_any(Layer)
 
 
+def filters_of(state: State) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any], NDArray[Any]]:
+    """Return what joints and layers keep apart, in four arrays (:func:`.filters.may_touch`)."""
+    apart, layer, touches = state.joints.apart, _NONE, _NONE
+    if state.entity_index.has_any(Layer):
+        layer, touches = state.table(Layer)["number"], state.table(Layer)["touches"]
+    if not len(apart):
+        return _NONE, _NONE, layer, touches
+    first = np.searchsorted(apart[:, 0], np.arange(len(state.entity_index) + 1))
+    return first, np.ascontiguousarray(apart[:, 1]), layer, touches
+
+
 def may_touch(state: State, a: NDArray[Any], b: NDArray[Any]) -> NDArray[np.bool_]:
     """Return of pairs of rows (n,) which of them no joint and no layer keeps from touching each other."""
-    low, high = np.minimum(a, b).astype(np.int64), np.maximum(a, b).astype(np.int64)
-    apart, pairs = state.joints.apart, (low << 32) | high
-    keys = np.append((apart[:, 0] << 32) | apart[:, 1], -1)  # sorted, but for one that no pair has
-    touching: NDArray[np.bool_] = keys[np.searchsorted(keys[:-1], pairs)] != pairs
-    if len(state.batch(Layer)):
-        touching &= _touches(state, low, high) & _touches(state, high, low)
+    state.compile((filters.mark_touching,))
+    touching, one, other = np.zeros(len(a), np.bool_), a.astype(np.int64), b.astype(np.int64)
+    direct_entry(filters.mark_touching)(*filters_of(state), one, other, touching)
     return touching
-
-
-def _touches(state: State, one: NDArray[np.int64], other: NDArray[np.int64]) -> NDArray[np.bool_]:
-    """Return whether bodies in rows (n,) touch the layers of others; the layer of none is 0."""
-    table = state.table(Layer)
-    touches, own, layer = table["touches"][one], table["number"][one], table["number"][other]
-    found: NDArray[np.bool_] = touches == 0
-    found |= (touches == _OWN) & ((layer == own) | (layer == 0))
-    found |= (touches == _OTHERS) & (layer != own)
-    return found

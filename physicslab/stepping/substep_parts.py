@@ -70,6 +70,8 @@ class SubstepParts:
         Those that kick bodies, or that contacts reckon with.
     accounts : StageAccounts
         The bookings of parts that Python does.
+    edits : bool
+        Whether Python at one of them may change anything: it runs systems of others, or forces in Python.
     uniform, packs : bool
         Whether no forces act but uniform ones that are compiled; or others, all of them compiled.
     """
@@ -95,6 +97,7 @@ class SubstepParts:
         self.parts: list[int] = []
         self.times: list[tuple[float, float, float]] = []
         self.hooks: dict[int, Hook] = {}
+        self.edits = False
         self.calls: dict[System, int] = {}
         self._drifted = self._kicked = 0.0
         if self.accounts.follows_way:
@@ -179,6 +182,7 @@ class SubstepParts:
         elif stage is Stage.RELAX:
             self._hook(lambda state, h: accounts.note_places(state))
         self._hook(lambda state, h: run(stage, state, share * h), share)
+        self.edits = True
         if stage is Stage.RELAX:
             self._hook(lambda state, h: accounts.book_overlap(state))
         return sentence("acts_within_step", system=others[0].name) if others else _NOTHING_TOUCHES
@@ -212,6 +216,7 @@ class SubstepParts:
         if not self.compiled:
             return _NOTHING_TOUCHES
         python = [one.name for one in forces if not (isinstance(one, ForceSystem) and one.packs())]
+        self.edits |= bool(python)
         return sentence("computed_in_python", system=python[0]) if python else _BOOKED
 
     def _count(self, systems: tuple[System, ...]) -> None:

@@ -27,6 +27,7 @@ from physicslab.kernels.broad.fat_boxes import fat_boxes
 from physicslab.kernels.broad.leaving import blank_boxes
 from physicslab.kernels.clock import time_after
 from physicslab.kernels.loading import direct_entry, working_ns
+from physicslab.kernels.near_counts import FOLLOWED
 from physicslab.kernels.solver import soft
 from physicslab.kernels.solver.finer import needed_factor
 from physicslab.kernels.wide import slots
@@ -111,7 +112,7 @@ class Substeps:
         self.split, self.uniform, self.hooks = made.split, made.uniform, tuple(made.reasons)
         self._parts, self._times, self._calls = made.parts, made.times, made.calls
         self._python, self._accounts, self._packs = made.hooks, made.accounts, made.packs
-        self._hooked = bool(made.reasons)
+        self._hooked, self._edits = bool(made.reasons), made.edits
         start, end = plan.stages.window
         parts, times = np.array(self._parts, np.int64), np.array(self._times).reshape(-1, 3).T.copy()
         self._course = parts, times, start, end, -start, self._hooked
@@ -221,6 +222,8 @@ class Substeps:
         """Do in Python what the loop has come back for; return at how many parts further it goes on."""
         if why == soft.PYTHON:
             self._python[part](state, h)
+            if self._edits:
+                state.contacts.counts[FOLLOWED] = 0  # shapes may be others
         elif why == soft.PAIRS_STALE and self._broad_phase is not None:
             if self._broad_phase.index_bodies(state):
                 return 0
@@ -262,7 +265,7 @@ class Substeps:
         state.collisions += impacts - finished_impacts
         self._nanoseconds += time.perf_counter_ns() - began
         self._schedule.defer(self._settle)
-        if why not in (soft.ALL, soft.PAIRS_STALE):
+        if why not in (soft.ALL, soft.PAIRS_STALE) and (why != soft.PYTHON or self._edits):
             self._held = None  # arrays may be replaced where it has come back; a list says so
         return why, done, substep, part
 

@@ -11,30 +11,27 @@ from physicslab.contacts.arguments import do_stage, motion_of, shapes_of, specul
 from physicslab.contacts.near_pairs import partition
 from physicslab.ecs.sentences import sentence
 from physicslab.kernels import direct_entry
-from physicslab.kernels.broad import chains, grid, leaving, near_pairs
+from physicslab.kernels.broad import chains, filters, grid, leaving, near_pairs
 from physicslab.kernels.broad.fat_boxes import HIT_SHARE, fat_boxes
 from physicslab.kernels.broad.leaving import AHEAD, BODIES, CELL, SMALLS, FatBoxes, blank_boxes
 from physicslab.kernels.geometry.shapes import OWN
 from physicslab.kernels.solver import soft
 from physicslab.kernels.wide import slots
 from physicslab.state.shapes import REGISTER
-from physicslab.state.solid import is_any_apart, may_touch, solid_rows
+from physicslab.state.solid import filters_of, is_any_apart, may_touch, solid_rows
 from physicslab.state.state import State
 from physicslab.systems.system import Stage, System, at
 
 _MAX_LOOKAHEAD = 8.0
 """Largest factor by which the margin of a moving body is increased, for substeps as configured."""
-_LOOKAHEAD_APART = 4.0
-"""Factor where joints or layers keep bodies apart, for all pairs are then listed each time. Pairs of 43 to
-2,000 bodies with chains that swing are listed .2 times a step with it, .6 to 1 times without."""
 _LOOKAHEAD_OF_FEW, _MANY = 2.0, 256
 """Factor for fewer bodies than that: listing their pairs takes as long as calling the loop once more, surplus
 pairs take little. Of 17 random scenes of 11 to 260 bodies 14 take .79 to .97 of the time with it and with
 margins that do not shrink with substeps, 3 take .99 to 1.13; five of 286 to 843 take .90 to 1.47."""
-_FEW, _FURTHER = 64, 2.0
+_FEW, _FURTHER, _FURTHER_APART = 64, 2.0, 4.0
 """Number of bodies up to which all pairs are listed again, for that takes no longer than to find the new
-ones; and by which factor they are listed further ahead. Ten scenes of 15 to 45 joined bodies take .80 to .97
-of the time with it, 48 others .97 on average."""
+ones; and by which factor they are listed further ahead, where joints or layers keep some apart by the second.
+Ten scenes of 15 to 45 joined bodies take .80 to .97 of the time with it, 48 others .97 on average."""
 
 
 def nothing_to_touch(state: State) -> str | None:
@@ -65,13 +62,12 @@ def _may_any_touch(state: State) -> bool:
 def _lookahead(state: State) -> tuple[float, float]:
     """Return for how long [s] boxes are made ahead, and for how many substeps more.
 
-    Among few or many sleeping bodies, and where joints or layers keep some apart, a new list takes longer
-    than the surplus pairs of an old one.
+    Among few or many sleeping bodies a new list takes longer than the surplus pairs of an old one.
     """
     few = len(state.entity_index) < _MANY
-    least = _LOOKAHEAD_APART if is_any_apart(state) else _LOOKAHEAD_OF_FEW if few else 1.0
+    least = _LOOKAHEAD_OF_FEW if few else 1.0
     if len(state.entity_index) <= _FEW:
-        least *= _FURTHER
+        least *= _FURTHER_APART if is_any_apart(state) else _FURTHER
     awake = int(np.count_nonzero(state.bodies.awake_inverse_mass))
     ahead = min(max(least, state.sleep.count / max(1, awake)), _MAX_LOOKAHEAD)
     simulation = state.simulation
@@ -115,6 +111,7 @@ class BroadPhaseSystem(System):
         self.bounds: NDArray[np.float64] = np.zeros(4)
         self.chains: NDArray[np.int64] = np.zeros(0, np.int64)
         self._listed_for: tuple[object, ...] = ()
+        self._filtered: tuple[object, int] = None, -1
 
     def attach(self, state: State) -> None:
         """Mark the list as stale where bodies came, went or changed, or contacts are found in another way.
@@ -164,8 +161,7 @@ class BroadPhaseSystem(System):
         fat, vertices = FatBoxes(*self.fat), state.bodies.shapes.vertices
         if len(vertices) <= _FEW or _sparse(state) or self.crowded or state.contacts.stale:
             return False
-        # The search for new pairs knows nothing of what joints keep apart, nor of chains.
-        if is_any_apart(state) or len(self.chains) or fat.counts[SMALLS] >= 0:
+        if len(self.chains) or fat.counts[SMALLS] >= 0:  # the search for new pairs knows nothing of chains
             return False
         fat.counts[SMALLS], fat.counts[BODIES], fat.spans[CELL] = direct_entry(leaving.index_bodies)(
             fat.boxes, vertices, fat.first, fat.body, fat.home_x, fat.home_y
@@ -175,6 +171,9 @@ class BroadPhaseSystem(System):
 
     def list_pairs(self, state: State, h: float) -> None:
         """List all near pairs again, for which there is no index then."""
+        filtered = state.joints.apart, state.entity_index.revision
+        if self._filtered[0] is not filtered[0] or self._filtered[1] != filtered[1]:
+            self._filtered, self.fat = filtered, (*self.fat[:9], *filters_of(state))
         awake, margin = state.bodies.awake_inverse_mass, speculative_margin(state, h)
         seconds, substeps = _lookahead(state)
         ahead = seconds + substeps * h
@@ -191,10 +190,8 @@ class BroadPhaseSystem(System):
         if len(self.chains):
             walls = self._add_chains(state, found, walls)
         if is_any_apart(state):
-            couples = self._couples[: 2 * found].reshape(-1, 2)
-            couples = couples[may_touch(state, couples[:, 0], couples[:, 1])]
-            found = len(couples)
-            self._couples[: 2 * found] = couples.ravel()
+            state.compile((filters.keep_touching,))
+            found = direct_entry(filters.keep_touching)(*self.fat[9:], self._couples, found)
         fat.moved[:] = False
         fat.counts[:] = 0, -1, 0
         partition(state, self._couples, found, self._pairs, walls, fat.ways)

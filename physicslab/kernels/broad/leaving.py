@@ -22,6 +22,7 @@ from physicslab.kernels import (
 )
 from physicslab.kernels.arguments import Motion, Near
 from physicslab.kernels.broad.fat_boxes import HIT_SHARE, fatten, left, usual_speed
+from physicslab.kernels.broad.filters import may_touch
 from physicslab.kernels.broad.grid import cell_at
 from physicslab.kernels.broad.near_pairs import beside, distance_to_activate, make_blank
 from physicslab.kernels.geometry.shapes import Shapes
@@ -61,7 +62,7 @@ class FatBoxes(NamedTuple):
     ``home_x`` is the level as well. ``counts`` is how many bodies have left their boxes, or -1 where all
     pairs must be listed again; how many are sorted, or -1 where there is no index; how many are in it.
     ``spans`` is the size of the smallest cells [m]; for how long boxes are made ahead [s], and for how many
-    substeps more.
+    substeps more. What follows is kept apart (:func:`physicslab.kernels.broad.filters.may_touch`).
     """
 
     ways: Vectors
@@ -73,15 +74,20 @@ class FatBoxes(NamedTuple):
     home_y: Rows
     counts: Rows
     spans: Numbers
+    first_apart: Rows
+    apart: Rows
+    layer: Rows
+    touches: Rows
 
 
 def blank_boxes(rows: int) -> Plain[FatBoxes]:
     """Return room for the fat boxes of so many bodies, none of which is made."""
     first = np.zeros(1 + (1 << (2 * rows).bit_length()), np.int64)
     body, home_x, home_y = np.zeros((3, rows), np.int64)
+    nothing = np.zeros(0, np.int64)
     return (
         np.zeros((8, rows)), np.zeros((rows, 4)), np.zeros(rows, np.bool_), first, body, home_x, home_y,
-        np.array([0, -1, 0], np.int64), np.zeros(3),
+        np.array([0, -1, 0], np.int64), np.zeros(3), nothing, nothing, nothing, nothing,
     )  # fmt: skip
 
 
@@ -174,6 +180,8 @@ def _pair(
     unmoved = leaver.first and not fat.moved[j]
     left_out = distance == math.inf and unmoved and beside(shapes, fat.ways, i, j)
     if _overlap(leaver.before, fat.boxes, j) and not left_out:
+        return
+    if not may_touch(fat.first_apart, fat.apart, fat.layer, fat.touches, i, j):
         return
     k = near.counts[PROXIMITY]
     near.counts[PROXIMITY] = k + 1

@@ -39,7 +39,7 @@ from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple, named_shapes
 from physicslab.kernels.joints.blocks import Joints
 from physicslab.kernels.joints.measured import overloaded
 from physicslab.kernels.motion import FARTHEST, LARGEST, clear, drift, find_beyond, kick, pack_state, predict
-from physicslab.kernels.near_counts import ACTIVE, FOLLOWED, LEFT, OUTSIDE, ROUND, WIDE_COUNT
+from physicslab.kernels.near_counts import ACTIVE, LEFT, OUTSIDE, ROUND, WIDE_COUNT
 from physicslab.kernels.ode.damped_flow import flow_forces
 from physicslab.kernels.ode.spring_flow import flow_at, rows_in
 from physicslab.kernels.records import Impacts
@@ -273,8 +273,6 @@ def _advance(
                     near, motion, shapes, materials, inverse, bounds, when, span, course.start,
                     gravity.margin, plan.substeps,
                 )  # fmt: skip
-                if course.hooked:
-                    counts[FOLLOWED] = 0  # what acts in between may change shapes
                 now = charge(cost, CONTACT, now)
             elif what == WIDEN:
                 if substep == plan.first:

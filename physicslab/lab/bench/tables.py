@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
+from physicslab.lab.bench.added import BODIES, Added
 from physicslab.lab.bench.catalogue import PEER_SIZE_LIMIT
 from physicslab.lab.bench.costs import Memory, Unused
 from physicslab.lab.bench.engine import OURS
@@ -24,6 +25,8 @@ class BenchReport:
         Scene by scene.
     unused : list of Unused
         Costs of a step for systems that it does not use.
+    added : list of Added
+        Those of a crowd for one thing more.
     memory : Memory, optional
         Memory of a body, where that was measured.
     """
@@ -31,6 +34,7 @@ class BenchReport:
     peers: bool
     scenes: list[SceneResult] = field(default_factory=list)
     unused: list[Unused] = field(default_factory=list)
+    added: list[Added] = field(default_factory=list)
     memory: Memory | None = None
 
     @property
@@ -48,7 +52,7 @@ class BenchReport:
         """Every figure, its target, and the machine it was taken on."""
         return lab_document(
             "bench", peers=self.peers, scenes=[_scene(result) for result in self.scenes],
-            growth=self.growths, unused=self.unused, bytes_per_body=self.memory,
+            growth=self.growths, unused=self.unused, added=self.added, bytes_per_body=self.memory,
             targets=[{**plain(check), "met": check.met} for check in self.checks],
         )  # fmt: skip
 
@@ -101,6 +105,10 @@ def report_text(report: BenchReport) -> str:
         blocks[_growth_title(report)] = _growth(report)
     if report.unused:
         blocks["a step with the systems that the scene needs, and with all there are"] = _unused(report)
+    if report.added:
+        blocks[f"ms a step of {BODIES:,} bodies in a funnel, and with one thing more far from them"] = _added(
+            report
+        )
     if memory := report.memory:
         blocks["bytes a body"] = (
             f"{memory.columns:.0f} in columns, {memory.spawned:.0f} with handles and esper's part, "
@@ -189,6 +197,15 @@ def _unused(report: BenchReport) -> str:
         for spent in report.unused
     ]  # fmt: skip
     return table(rows)
+
+
+def _added(report: BenchReport) -> str:
+    rows = [["with", "without, ms", "with, ms", "ratio", "stepper"]]
+    rows += [
+        [one.what, _ms(one.without_ms), _ms(one.with_ms), cell(one.ratio, ".2f"), one.stepper]
+        for one in report.added
+    ]
+    return table(rows, words=(0, 4))
 
 
 def _targets(report: BenchReport) -> str:
