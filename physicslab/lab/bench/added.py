@@ -42,7 +42,7 @@ _FAR, _APART = (60.0, 60.0), 0.5
 """Where the thing is, and how far apart two bodies are [m]."""
 _STEPS, _FALLING = 10, 6
 """Steps of a call, and how many such calls go by before the timing."""
-_CALLS = 12
+_CALLS = 6
 """How many are timed."""
 
 
