@@ -11,7 +11,18 @@ import pytest
 from numpy.typing import NDArray
 
 from physicslab import World, load_scene, save_scene
-from physicslab.components import Charge, Drag, Mass, Material, Pin, Shape, Spring, Transform, Velocity
+from physicslab.components import (
+    Charge,
+    Drag,
+    Mass,
+    Material,
+    Pin,
+    Shape,
+    Spring,
+    Thrust,
+    Transform,
+    Velocity,
+)
 from physicslab.contacts.report import contacts_of
 from physicslab.diagnostics.contact_warnings import contact_graph
 from physicslab.diagnostics.energy import Audit
@@ -330,6 +341,38 @@ def test_of_soft_islands_those_of_unlike_masses_and_what_only_flies_are_apart(
     world.spawn(Transform((0.0, 9.0)), Velocity((0.5, 0.0)), Mass(1.0))  # no Shape
     world.run(steps=3)
     assert sizes(world) == [len(calm), len(loaded), 1]
+
+
+def small_disc(world: World) -> int:
+    """Add a disc that falls by an eighth of its size in a substep."""
+    return world.spawn(Transform((2 * FAR, 1.0)), Velocity(), Mass(1e-4), Shape.circle(7e-4))
+
+
+def driven_disc(world: World) -> int:
+    one = disc(world, 2 * FAR, 0.5)
+    world.add(one, Thrust((3.0, 0.0), frequency=1.5))
+    return one
+
+
+@pytest.mark.parametrize("add", [small_disc, driven_disc])
+def test_of_soft_islands_those_whose_steps_take_longer_are_apart_and_cost_others_no_bit(
+    add: Callable[[World], int],
+) -> None:
+    alone, world = (World(simulation=ALL_SOFT[0]) for _ in range(2))
+    for each in (alone, world):
+        floor(each)
+        calm = [body for n in (0, 1) for body in few(each, n * FAR)]
+    one = add(world)
+    for each in (alone, world):
+        each.run(steps=60)
+    assert sizes(world) == [len(calm), 1]
+    rest, other = world.parts
+    assert (
+        rest.substeps == alone.substeps and rest.stepper is not None and rest.stepper.name == "fused_contact"
+    )
+    assert other.substeps > rest.substeps or (other.stepper is not None and other.stepper.name == "contact")
+    assert np.array_equal(motion(world, calm), motion(alone, calm))
+    assert motion(world, [one])[0, 1] > 0.0
 
 
 def test_unlike_masses_are_not_apart_from_fewer_others() -> None:

@@ -260,7 +260,7 @@ def _spins(world: World, graph: ContactGraph) -> Iterator[ModelWarning]:
 
 def _falls(world: World) -> Iterator[ModelWarning]:
     """Yield how far gravity carries bodies in a substep, where no shorter one is made."""
-    if falls_far(world, world.simulation.dt) == MAX_FACTOR:
+    if falls_far(world, world.simulation.dt, world.bodies.smallest) == MAX_FACTOR:
         h = world.simulation.dt / (world.simulation.substeps * MAX_FACTOR)
         sizes = world.physics.gravity.magnitude * h * h / world.bodies.smallest
         if sizes <= FALL_LIMIT:

@@ -20,7 +20,10 @@ from physicslab.kernels.solver.impulse import HEAVY_RATIO
 from physicslab.state.state import State
 from physicslab.stepping.ballistic import CONTACT_STEP, turning_rows, why_never_exact
 from physicslab.stepping.contact_model import why_all_soft
+from physicslab.stepping.stepper import falls_far
 from physicslab.systems.accelerate import AccelerateSystem
+from physicslab.systems.drag import DragSystem
+from physicslab.systems.gravity import GravitySystem
 from physicslab.systems.integrate import why_nowhere
 from physicslab.systems.schedule import Schedule
 from physicslab.systems.standard import PHYSICS_SYSTEMS
@@ -38,6 +41,8 @@ FAR_RADII = 4.0
 """Distance, in radii of both, up to which they stay one island in any case."""
 NEAR_S, NEAR_STEPS = 0.1, 4.0
 """Islands that could meet within so long [s], or so many steps, become one."""
+_FOLLOWED = GravitySystem, DragSystem
+"""Forces on each body by itself that the compiled loop of substeps follows."""
 
 
 class Partition(NamedTuple):
@@ -73,9 +78,23 @@ def why_whole(state: State, schedule: Schedule) -> str | None:
 
 
 def _all_shaped_alike(state: State, schedule: Schedule, rows: Rows) -> bool:
-    """Whether all of some bodies can touch others, and none needs more substeps for the masses of others."""
-    loaded = bool(schedule.forces) and _are_unequal(state, rows)
-    return bool(state.table(Shape).present[rows].all()) and not loaded
+    """Whether all of some bodies can touch others, and steps of none take longer than those of others."""
+    return bool(state.table(Shape).present[rows].all()) and not _take_longer(state, schedule, rows)
+
+
+def _take_longer(state: State, schedule: Schedule, rows: Rows) -> bool:
+    """Whether steps of some bodies may take longer than those of others: in more substeps, or by Python.
+
+    They may need more for their masses, or as one is small for its fall. Python follows forces on each body
+    by itself, or books their work, in each substep; springs and drag the compiled loop follows.
+    """
+    if not schedule.forces:
+        return False
+    smallest = 2.0 * float(state.bodies.shapes.thin[rows].min(initial=np.inf))
+    if _are_unequal(state, rows) or falls_far(state, state.simulation.dt, smallest) > 1:
+        return True
+    own = [force for force in schedule.forces if force.couples_nothing and type(force) not in _FOLLOWED]
+    return any(np.isin(rows, state.batch(*force.needs).rows).any() for force in own)
 
 
 def _are_unequal(state: State, rows: Rows) -> bool:
@@ -174,8 +193,7 @@ def _advanced_apart(
     """Return islands, of which those are together that would not be advanced better on their own.
 
     These are those of more than ``most`` bodies that can touch something, unless each ``flies``. Where none
-    is better off alone, those of very unlike masses, which may need more substeps than others, are together
-    by themselves, unless they are most bodies.
+    is better off alone, those whose steps take longer are together by themselves, unless they are most of all.
     """
     shaped = state.table(Shape).present
     own, loaded, rest = list[Rows](), list[Rows](), list[Rows]()
@@ -185,7 +203,7 @@ def _advanced_apart(
         if touching <= most or (free and touching <= MAX_BODIES):
             own.append(group)
         else:
-            apart = most == 0 and touching <= MAX_BODIES and schedule.forces and _are_unequal(state, group)
+            apart = most == 0 and touching <= MAX_BODIES and _take_longer(state, schedule, group)
             (loaded if apart else rest).append(group)
     if sum(map(len, loaded)) >= sum(map(len, rest)):
         loaded, rest = [], loaded + rest

@@ -93,7 +93,7 @@ class Soft(Stepper):
         unequal = state.bodies.unequal and state.has_forces
         if not unequal:
             contacts.substep_factor = 1
-        factor = max(contacts.substep_factor, falls_far(state, h / parts))
+        factor = max(contacts.substep_factor, falls_far(state, h / parts, state.bodies.smallest))
         state.substeps = factor * state.simulation.substeps
         rested = min(h, state.simulation.dt)  # of a divided step only the end is observed
         finer = contacts.substep_factor if unequal else 0

@@ -182,16 +182,17 @@ def divisions(state: State, h: float) -> int:
     return max(1, math.ceil(h / own - _TOLERATED))
 
 
-def falls_far(state: State, h: float) -> int:
+def falls_far(state: State, h: float, smallest: float) -> int:
     """Return by which factor the substeps of a step of ``h`` seconds must be more for soft contacts.
 
     In a substep, what gravity adds to the way of a body at rest must not carry it past another one, and
-    bodies are to sink into each other by a small share of their size alone.
+    bodies, of which the ``smallest`` has that size [m], are to sink into each other by a small share of their
+    size alone.
     """
     substep, physics = h / state.simulation.substeps, state.physics
     if physics.gravity_mode != "linear":
         return 1
-    fall, most = physics.gravity.magnitude * substep * substep, MAX_FALL * state.bodies.smallest
+    fall, most = physics.gravity.magnitude * substep * substep, MAX_FALL * smallest
     if fall <= most:
         return 1
     return MAX_FACTOR if fall >= MAX_FACTOR**2 * most else math.ceil(math.sqrt(fall / most))
