@@ -193,7 +193,7 @@ def _advanced_apart(
     """Return islands, of which those are together that would not be advanced better on their own.
 
     These are those of more than ``most`` bodies that can touch something, unless each ``flies``. Where none
-    is better off alone, those whose steps take longer are together by themselves, unless they are most of all.
+    is better off alone, those whose steps take longer are together by themselves, unless they are most.
     """
     shaped = state.table(Shape).present
     own, loaded, rest = list[Rows](), list[Rows](), list[Rows]()
