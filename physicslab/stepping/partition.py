@@ -85,13 +85,13 @@ def _all_shaped_alike(state: State, schedule: Schedule, rows: Rows) -> bool:
 def _take_longer(state: State, schedule: Schedule, rows: Rows) -> bool:
     """Whether steps of some bodies may take longer than those of others: in more substeps, or by Python.
 
-    They may need more for their masses, or as one is small for its fall. Python follows forces on each body
-    by itself, or books their work, in each substep; springs and drag the compiled loop follows.
+    They may need more for their masses, where anything but drag acts, or as one is small for its fall. Python
+    follows forces on each body by itself, or books their work, in each substep; springs and drag the compiled
+    loop follows.
     """
-    if not schedule.forces:
-        return False
+    presses = any(type(force) is not DragSystem for force in schedule.forces)
     smallest = 2.0 * float(state.bodies.shapes.thin[rows].min(initial=np.inf))
-    if _are_unequal(state, rows) or falls_far(state, state.simulation.dt, smallest) > 1:
+    if (presses and _are_unequal(state, rows)) or falls_far(state, state.simulation.dt, smallest) > 1:
         return True
     own = [force for force in schedule.forces if force.couples_nothing and type(force) not in _FOLLOWED]
     return any(np.isin(rows, state.batch(*force.needs).rows).any() for force in own)
