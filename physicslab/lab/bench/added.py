@@ -113,7 +113,7 @@ ADDED: dict[str, Callable[[World], Any]] = {
     "a trail": lambda world: _disc(world, Trail(100)),
     "a gate": lambda world: (_disc(world), world.spawn(Gate(_FAR, (_FAR[0] + 1.0, _FAR[1])))),
 }
-"""What is added to the world of a crowd."""
+"""All that may be added to the world of a crowd, by its name."""
 
 
 @dataclass(frozen=True, slots=True)
