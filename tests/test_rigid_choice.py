@@ -14,13 +14,13 @@ from desk import bits
 
 from physicslab import World
 from physicslab.components import Drag, Held, Mass, Material, Shape, Spring, Transform, Velocity
-from physicslab.diagnostics.energy import measure_energy
+from physicslab.diagnostics.energy import measure_account, measure_energy
 from physicslab.diagnostics.warnings import find_warnings
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.files.json_text import json_text
 from physicslab.files.scene import load_scene, read_scene, save_scene, write_scene
 from physicslab.lab.bench.catalogue import SCENES
-from physicslab.prefabs import box, circle
+from physicslab.prefabs import box, circle, container
 from physicslab.stepping.rigid import Rigid
 from physicslab.systems.standard import standard_systems
 from physicslab.systems.system import ForceSystem, Stage, System, at
@@ -280,3 +280,54 @@ def test_ten_discs_in_a_pit_come_to_rest_and_their_forces_are_found() -> None:
     before = rigid.by_impulses
     world.run(seconds=1.0)
     assert measure_energy(world).kinetic == 0.0 and rigid.by_impulses == before
+
+
+_WEDGED = (
+    (-1.2622358165351204, 0.20225435205180226, 0.31415996941281565),
+    (0.16434855925640648, 0.20225431708677066, 1.5707958606855117),
+    (0.7867076342310028, 0.20225426417979642, 1.5707964328612574),
+    (1.2622358709262116, 0.2022542485937369, 0.3141592653589794),
+    (-0.786707700785249, 0.20225424859373684, -0.9424777960769377),
+    (-0.31117965467346337, 0.2022544026469263, 2.8274323398662964),
+    (0.4755280338389309, 0.4761691426773718, -0.31415973146836407),
+)
+"""Where pentagons are that fell into a box [m, m, rad]: gaps of 1e-7 m, over which they fall in turn."""
+
+
+def wedged() -> World:
+    world = World()
+    container(world, width=3.0, height=6.0)
+    angles = [0.4 * math.pi * k for k in range(5)]
+    pentagon = [(0.25 * math.cos(angle), 0.25 * math.sin(angle)) for angle in angles]
+    for x, y, angle in _WEDGED:
+        world.spawn(Transform((x, y), angle), Velocity(), Mass(1.0), Shape.polygon(pentagon))
+    world.synchronise()
+    return world
+
+
+def test_what_impulses_hold_at_rest_rests_without_them() -> None:
+    """It was let fall by 1e-7 m and held again in each step, for as long as it lay there."""
+    world = wedged()
+    rows = world.batch(Velocity).rows
+    before = bits(world)
+    world.step()
+    assert rigid_of(world).by_impulses == 1
+    evaluations = world.force_evaluations
+    world.run(steps=300)
+    assert world.force_evaluations == evaluations and rigid_of(world).by_impulses == 1
+    assert bits(world) == before and not world.table(Velocity)["linear"][rows].any()
+    account = measure_account(world)
+    assert account.energy["numerical"] == pytest.approx(0.0, abs=1e-12)
+    assert account.momentum["contact"].y == pytest.approx(7.0 * G * 301 / 60, rel=1e-9)
+    assert abs(account.momentum["numerical"].y) < 1e-9 and abs(account.angular_momentum["numerical"]) < 1e-9
+
+
+def test_what_impulses_have_held_falls_where_its_support_is_gone() -> None:
+    world = wedged()
+    world.run(steps=5)
+    *_, last = world.batch(Velocity).entities.tolist()
+    below = world.batch(Velocity).entities.tolist()[:6]
+    for entity in below:
+        world.remove(entity)
+    world.run(steps=10)
+    assert world.component(last, Velocity).linear.y == pytest.approx(-G * 10 / 60, rel=1e-9)

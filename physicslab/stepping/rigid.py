@@ -218,6 +218,9 @@ class Rigid(Stepper):
             if not (step.refused or step.by_impulses) and self._ode.was_apart(together):
                 step.refused = sentence("contradiction")
             state.force_evaluations += step.evaluations
+            if step.by_impulses and not (step.refused or self._gives_up) and parts == 1:
+                self._motion.rest_held(step, state.account.sums, before, booked, h, scene[7][:, 2].min())
+                state.contacts.logged = logged if step.rests else state.contacts.logged
             self.energetic_impacts += step.energetic
             self.restitutions_lowered += step.lowered
             if step.refused or (step.by_impulses and self._gives_up):

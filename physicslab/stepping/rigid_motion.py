@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from physicslab.ecs.sentences import sentence
 from physicslab.kernels import direct_entry
-from physicslab.kernels.accounts import PX
+from physicslab.kernels.accounts import CONTACT, PX
 from physicslab.kernels.forces.budget import ACCOUNTS
 from physicslab.kernels.rigid import motion, step
 from physicslab.kernels.rigid.equations import VECTORS
@@ -41,6 +41,8 @@ _WHY = {
     step.SQUARES_NOT_FINITE: sentence("squares_not_finite"),
     step.TOO_FAST: sentence("too_fast_for_short_steps"),
 }
+_CREEP = 1e-5
+"""Share of the smallest size by which impulses may have moved bodies in a step that hold them at rest."""
 _BEFORE = 5
 """Where the room has a state, by whose length it is made."""
 _GO_ON_BY_IMPULSES = motion.NO_FORCES, motion.UNRESOLVED, step.STALLED
@@ -150,6 +152,28 @@ class RigidMotion:
         ) = counts.tolist()  # fmt: skip
         made.rests = self._steady and not (made.evaluations or made.impacts or made.refused)
         return made
+
+    def rest_held(
+        self, made: MadeStep, sums: NDArray[np.float64], before: tuple[NDArray[np.float64], ...],
+        booked: NDArray[np.float64], h: float, smallest: float,
+    ) -> None:  # fmt: skip
+        """Let bodies rest where they were before a step of ``h`` seconds, if impulses have held them in it.
+
+        A heap that is wedged may have no forces, and events without end. Impulses in short steps hold it, and
+        leave gaps over which it falls in the next step, and so on. ``before`` are q and v (n,) of then, and
+        ``booked`` the ``sums`` (CAUSES, 4) of the account; the ``smallest`` of what touches has that size [m].
+        """
+        q, v, n = self._ode.q, self._ode.v, self._ode.layout.clock
+        moved = before[1][:n].any() or v[:n].any() or not self._steady
+        if moved or np.abs(q[:n] - before[0][:n]).max(initial=0.0) > _CREEP * smallest:
+            return
+        given, contact = self._room[2][-1][n + 1 :].reshape(-1, ACCOUNTS), self._ode.slots[CONTACT] - n - 1
+        given[:] = ((v - before[1])[n + 1 :] / h).reshape(-1, ACCOUNTS)
+        given[contact // ACCOUNTS] = 0.0
+        given[contact // ACCOUNTS] = -given.sum(axis=0)  # what holds them, as by impacts and friction
+        (q[:], v[:]), sums[:] = before, booked
+        self.rest(h)
+        made.rests, made.impacts, made.energetic, made.lowered, made.energy_added = True, 0, 0, 0, 0.0
 
     def rest(self, h: float) -> None:
         """Book another step of ``h`` seconds like the last one, in which nothing moved."""
