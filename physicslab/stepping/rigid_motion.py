@@ -162,10 +162,11 @@ class RigidMotion:
         A heap that is wedged may have no forces, and events without end. Impulses in short steps hold it, and
         leave gaps over which it falls in the next step, and so on. ``before`` are q and v (n,) of then, and
         ``booked`` the ``sums`` (CAUSES, 4) of the account; the ``smallest`` of what touches has that size [m].
+        Where joints hold too, what they give and what contacts do is not told apart, and the step stays.
         """
         q, v, n = self._ode.q, self._ode.v, self._ode.layout.clock
         moved = before[1][:n].any() or v[:n].any() or not self._steady
-        if moved or np.abs(q[:n] - before[0][:n]).max(initial=0.0) > _CREEP * smallest:
+        if self._joined or moved or np.abs(q[:n] - before[0][:n]).max(initial=0.0) > _CREEP * smallest:
             return
         given, contact = self._room[2][-1][n + 1 :].reshape(-1, ACCOUNTS), self._ode.slots[CONTACT] - n - 1
         given[:] = ((v - before[1])[n + 1 :] / h).reshape(-1, ACCOUNTS)
