@@ -223,10 +223,9 @@ def bench(parser: ArgumentParser) -> None:
     parser.add_argument("--seed", metavar="S", type=series, default=(0, 0), help=words)
     parser.epilog = (
         "--list names the scenes with their groups; unused: what a step costs more for systems that the "
-        "scene does not use; added: what one of a crowd costs more for one thing more far from it; memory: "
-        "bytes a body. dt is 1/60 s, 4 substeps, one thread, nothing sleeps; pymunk takes 10 iterations with "
-        "a slop of 5 mm, Box2D 2.3 8 and 3. The exit status is 0 whether targets are met or not, and 1 if a "
-        "run diverges."
+        "scene does not use; added: for one thing more far from a crowd; memory: bytes a body. dt is 1/60 s, "
+        "4 substeps, one thread, nothing sleeps; pymunk takes 10 iterations with a slop of 5 mm, Box2D 2.3 8 "
+        "and 3. The exit status is 0 whether targets are met or not, and 1 if a run diverges."
     )
 
 
