@@ -161,7 +161,7 @@ class RigidMotion:
 
         A heap that is wedged may have no forces, and events without end. Impulses in short steps hold it, and
         leave gaps over which it falls in the next step, and so on. ``before`` are q and v (n,) of then, and
-        ``booked`` the ``sums`` (CAUSES, 4) of the account; the ``smallest`` of what touches has that size [m].
+        ``booked`` the ``sums`` (CAUSES, 4) of the account; what touches has the ``smallest`` size [m].
         Where joints hold too, what they give and what contacts do is not told apart, and the step stays.
         """
         q, v, n = self._ode.q, self._ode.v, self._ode.layout.clock
