@@ -165,7 +165,7 @@ SENTENCES = {
     "joint_limit": "a {joint} has a limit, or a motor that may stall",
     "energy_from_nowhere": "press on each other, and contacts have given energy that comes from nowhere",
     "and_lost_by_now": "{why}; {energy} J of the energy is an error by now",
-    "moved_apart": "was added by moving bodies apart that overlapped",
+    "moved_apart": "energy was added by moving bodies apart that overlapped",
     "energetic_impacts": (
         "impacts obey Stronge's law (the normal force gives back e^2 of the work of the "
         "approach), as Newton's with friction would have made energy"
