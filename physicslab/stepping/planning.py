@@ -81,7 +81,7 @@ def plan_for_jumps(state: State, schedule: Schedule, plan: StepPlan) -> StepPlan
     """Return the plan with steps of one length, for a force that no method which chooses its steps follows.
 
     So is dry friction, in Python, of a body that it has stopped: it jumps at every step, however short. So
-    are those of joints that contradict each other, or hold a body in a line between fixed points, and of rigid
+    are those of joints that contradict each other, or hold a body in a line between fixed points, and rigid
     contacts of what is wedged: soft ones give a little.
     """
     if len(state.joints) or plan.contacts == "rigid":

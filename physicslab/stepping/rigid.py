@@ -42,10 +42,9 @@ from physicslab.systems.resolve import ResolveSystem
 from physicslab.systems.schedule import Schedule
 from physicslab.systems.system import Stage
 
-
 _IN_A_ROW = 12
-"""Steps in a row that may be made by impulses, where soft contacts may go on after them. In 36 heaps of 6 to 12
-bodies what lands takes up to 7, what is wedged 10 to 106, each as long as two frames of a window."""
+"""Steps in a row that may be made by impulses, where soft contacts may go on after them. In 36 heaps of 6 to
+12 bodies what lands takes up to 7, what is wedged 10 to 106, each as long as two frames of a window."""
 
 
 class Rigid(Stepper):
