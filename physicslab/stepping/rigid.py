@@ -45,8 +45,9 @@ from physicslab.systems.system import Stage
 
 _IN_A_ROW = MAX_SUBSTEP_FACTOR - 1
 """Steps in a row that may be made by impulses, where soft contacts may go on after them. In 36 heaps of 6 to
-12 bodies what lands takes up to 7, what is wedged 10 to 106, each as long as two frames of a window; ten discs
-that settle in a pit take 14. They are counted where soft contacts keep their factor, up to its largest."""
+12 bodies what lands takes up to 7, what is wedged 10 to 106, each as long as two frames of a window; ten
+discs that settle in a pit take 14. They are counted where soft contacts keep their factor, up to its
+largest."""
 
 
 class Rigid(Stepper):
