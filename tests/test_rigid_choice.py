@@ -331,3 +331,38 @@ def test_what_impulses_have_held_falls_where_its_support_is_gone() -> None:
         world.remove(entity)
     world.run(steps=10)
     assert world.component(last, Velocity).linear.y == pytest.approx(-G * 10 / 60, rel=1e-9)
+
+
+def wedged_beside_a_mover(contacts: str = "auto") -> World:
+    """Return the same with what moves far from it, so that the heap is held by impulses in each step."""
+    world = wedged()
+    world.spawn(Transform((90.0, 0.0)), Velocity((0.1, 0.0)), Shape.circle(0.5))
+    world.simulation = replace(world.simulation, contacts=contacts)
+    return world
+
+
+def test_what_is_wedged_for_long_goes_on_with_soft_contacts() -> None:
+    """Each step by impulses took longer than a frame; a thirteenth body made it a hundred times as fast."""
+    world = wedged_beside_a_mover()
+    world.run(steps=6)
+    assert world.plan.contacts == "rigid" and rigid_of(world).by_impulses == 6
+    loaded, copied, singly = read_scene(write_scene(world)), world.copy(), wedged_beside_a_mover()
+    for each in (world, loaded, copied):
+        each.run(steps=30)
+    for _ in range(36):
+        singly.step()
+    assert world.plan.contacts == "soft"
+    assert world.plan.contact_reason == "rigid contacts lead from one event to the next without end"
+    assert bits(world) == bits(loaded) == bits(copied) == bits(singly)
+    again = read_scene(write_scene(world))
+    for each in (world, again):
+        each.run(steps=5)
+    assert bits(world) == bits(again) and again.plan.contacts == "soft"
+    positions = world.table(Transform)["position"][world.batch(Velocity, Mass).rows]
+    assert np.abs(positions - np.array(_WEDGED)[:, :2]).max() < 1e-3
+
+
+def test_what_is_wedged_stays_rigid_where_that_is_chosen() -> None:
+    world = wedged_beside_a_mover("rigid")
+    world.run(steps=16)
+    assert world.plan.contacts == "rigid" and rigid_of(world).by_impulses == 16

@@ -55,6 +55,7 @@ SENTENCES = {
     "joints_without_end": (
         "joints hold bodies by forces that grow without limit, or from one event to the next"
     ),
+    "events_without_end": "rigid contacts lead from one event to the next without end",
     "nothing_touches": "nothing can touch",
     "jumps_in_python": "the force of {system} has no compiled kernel, and jumps",
     "chosen_before": "{method} was chosen before the scene was saved",

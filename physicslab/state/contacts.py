@@ -65,7 +65,8 @@ class Contacts:
     impulse_dt : float
         The time [s] over which the points' impulses act; 0 before there were any.
     substep_factor : int
-        The factor by which the coming step needs more substeps than configured.
+        The factor by which the coming step needs more substeps than configured; of rigid contacts one more
+        than how many steps in a row were made by impulses.
     stale : bool
         Whether the pairs must be listed again because bodies came, went or changed.
     restoring : bool

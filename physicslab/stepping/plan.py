@@ -10,6 +10,8 @@ from physicslab.systems.system import Stage
 
 WITHOUT_END = sentence("joints_without_end")
 """Why joints are soft that were not before."""
+EVENTS_WITHOUT_END = sentence("events_without_end")
+"""The same of contacts."""
 ASKED_FOR = sentence("asked_for")
 """Why something is as it was configured."""
 
@@ -70,7 +72,7 @@ class StepPlan:
     def kept(self) -> tuple[str, str, int]:
         """Choices that a file keeps: how collisions are found, how forces are followed, in how many steps."""
         collisions = "rigid" if self.contacts == "rigid" and self.collisions != "exact" else self.collisions
-        if self.contact_reason == WITHOUT_END:
+        if self.contact_reason in (WITHOUT_END, EVENTS_WITHOUT_END):
             collisions = "step"
         if self.split_forces is not None:
             return collisions, self.split_forces.name, self.split_steps

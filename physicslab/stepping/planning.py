@@ -17,7 +17,7 @@ from physicslab.state.state import State
 from physicslab.stepping.ballistic import why_not_exact, why_not_worthwhile
 from physicslab.stepping.contact_model import choose_contacts
 from physicslab.stepping.method import best_method, method_beside_contacts
-from physicslab.stepping.plan import ASKED_FOR, WITHOUT_END, StepPlan, default_plan
+from physicslab.stepping.plan import ASKED_FOR, EVENTS_WITHOUT_END, WITHOUT_END, StepPlan, default_plan
 from physicslab.systems.accelerate import AccelerateSystem
 from physicslab.systems.integrate import IntegrateSystem, why_nowhere
 from physicslab.systems.schedule import Schedule
@@ -81,16 +81,14 @@ def plan_for_jumps(state: State, schedule: Schedule, plan: StepPlan) -> StepPlan
     """Return the plan with steps of one length, for a force that no method which chooses its steps follows.
 
     So is dry friction, in Python, of a body that it has stopped: it jumps at every step, however short. So
-    are those of joints that contradict each other, or hold a body in a line between fixed points: soft ones
-    give a little.
+    are those of joints that contradict each other, or hold a body in a line between fixed points, and rigid
+    contacts of what is wedged: soft ones give a little.
     """
-    if len(state.joints):
-        own = why_not_smooth(state, schedule) or WITHOUT_END
-        plan = method_beside_contacts(state, schedule, own)
+    if len(state.joints) or plan.contacts == "rigid":
+        end = WITHOUT_END if len(state.joints) else EVENTS_WITHOUT_END
+        plan = method_beside_contacts(state, schedule, why_not_smooth(state, schedule) or end)
         touch = "step" if schedule.runs(Stage.CONTACT) else "none"
-        return replace(
-            plan, collisions=touch, collision_reason=WITHOUT_END, contacts="soft", contact_reason=WITHOUT_END
-        )
+        return replace(plan, collisions=touch, collision_reason=end, contacts="soft", contact_reason=end)
     reason = sentence("jumps_in_python", system=schedule.interpreted[0])
     return replace(plan, integrator=RK4, substeps=state.simulation.substeps, reason=reason)
 

@@ -21,6 +21,7 @@ from physicslab.kernels.rigid import features as F
 from physicslab.kernels.rigid import joined, step
 from physicslab.kernels.rigid.features import PAIR
 from physicslab.kernels.rigid.point_records import write_points
+from physicslab.kernels.solver.impulse import MAX_SUBSTEP_FACTOR
 from physicslab.kernels.wide import slots
 from physicslab.ode.system import OdeSystem
 from physicslab.state.chain_links import segment_of_link
@@ -41,6 +42,12 @@ from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.resolve import ResolveSystem
 from physicslab.systems.schedule import Schedule
 from physicslab.systems.system import Stage
+
+_IN_A_ROW = MAX_SUBSTEP_FACTOR - 1
+"""Steps in a row that may be made by impulses, where soft contacts may go on after them. In 36 heaps of 6 to
+12 bodies what lands takes up to 7, what is wedged 10 to 106, each as long as two frames of a window; ten
+discs that settle in a pit take 14. They are counted where soft contacts keep their factor, up to its
+largest."""
 
 
 class Rigid(Stepper):
@@ -144,16 +151,21 @@ class Rigid(Stepper):
                     self._sample(state.samples, at, count * h)
                 made += count
                 break
+            if state.simulation.contacts == "auto" and state.contacts.substep_factor > _IN_A_ROW:
+                if made:
+                    break  # the next call begins where it gives up
+                raise NotSmooth(self.why_impulses)
             step = self._step(scene, state, at, h, parts)
             if step.by_impulses and self._gives_up:
                 if made:
-                    break  # the next call begins where it gives up
+                    break
                 raise NotSmooth(step.by_impulses)
             if step.refused:
                 self._refused, self.why_soft = state.steps + made, step.refused
                 self.left_to_soft += 1
                 break
-            last, made = step, made + 1
+            last, made, wedged = step, made + 1, step.by_impulses and not step.rests
+            state.contacts.substep_factor = state.contacts.substep_factor + 1 if wedged else 1
             rests = step.rests and figures is not None
             self._goes_on = not self._impacts_alone or self._records.hold(step)
             if state.joints.breakable and made < steps:
