@@ -154,6 +154,21 @@ def test_a_run_from_a_pause_and_the_edit_before_it_are_undone_one_by_one(desk: D
         assert not desk.world.entities() and desk.world.time == moment
 
 
+def test_single_steps_and_the_edit_before_them_are_undone_one_by_one(desk: Desk) -> None:
+    """Ctrl+Z after two single steps removed the ball, too, that was made before them."""
+    tap(desk, "space")
+    start = desk.world.time
+    for many in (2, 3):
+        click_at(desk, desk.pixel(-4.0 + 2.0 * many, 3.0))
+        assert len(desk.world.entities()) == many
+        tap(desk, ".")
+        tap(desk, ".")
+    after = desk.world.time
+    for many, time in ((3, 0.5 * (start + after)), (2, 0.5 * (start + after)), (2, start), (1, start)):
+        tap(desk, "z", CTRL)
+        assert len(desk.world.entities()) == many and desk.world.time == pytest.approx(time)
+
+
 def test_a_click_on_a_spark_opens_the_microscope_in_a_pause_alone() -> None:
     desk = sized((1280, 720), load_scene("drop"))
     while not desk.world.contacts.logged:

@@ -549,6 +549,8 @@ def test_a_ramp_has_the_length_and_the_angle_of_its_slope(desk: Desk) -> None:
     width, height = np.ptp(np.array([tuple(vertex) for vertex in shape.vertices]), axis=0)
     assert (width, height) == pytest.approx((2 * math.cos(math.pi / 9), 2 * math.sin(math.pi / 9)))
     assert not len(desk.world.batch(Velocity))
+    (ramp,) = desk.world.entities()
+    assert desk.world.label(ramp) == f"ramp {ramp}"  # it was called a polygon
     assert only(desk.world, Material).restitution == desk.window.recipe.restitution > 0.0
 
 

@@ -7,7 +7,7 @@ import pytest
 from desk import FRAME, Desk, bits, click_at, empty_world, tap, write
 from test_hud import frame, recorded
 
-from physicslab.components import Held, Mass, Rope, Spring, Transform, Velocity
+from physicslab.components import Held, Mass, Rod, Rope, Spring, Transform, Velocity
 from physicslab.ecs.vector import Vector2
 from physicslab.history import RemoveComponent
 from physicslab.prefabs import box, circle, pendulum
@@ -357,6 +357,27 @@ def test_what_joints_hold_follows_the_hand_as_fast_where_frames_are_slow(steps: 
     desk.move(1.5, 0.5)
     desk.frames(60 // steps, elapsed=steps * FRAME)
     assert (world.component(ball, Transform).position - Vector2(1.5, 0.5)).magnitude < 0.02
+
+
+@pytest.mark.parametrize("way", [1.0, 2.0, 4.0])
+def test_what_joints_hold_comes_to_rest_where_a_hand_is_that_jumps(way: float) -> None:
+    """It was braked by half of the force that pulled, and went 0.6 m too far in a jump of 2 m."""
+    world = empty_world()
+    ball = circle(world, (0.0, 0.0), radius=0.2)
+    world.spawn(Rod(b=ball, anchor_b=(0.0, 0.0), anchor_a=(0.0, 3.0), length=3.0))
+    desk = Desk(world)
+    desk.window.tool = "select"
+    desk.press(0.0, 0.0)
+    desk.frames(5)
+    angle = way / 3.0
+    goal = Vector2(3.0 * math.sin(angle), 3.0 - 3.0 * math.cos(angle))
+    desk.move(goal.x, goal.y)
+    farthest = 0.0
+    for _ in range(60):
+        desk.frames()
+        place = world.component(ball, Transform).position
+        farthest = max(farthest, math.atan2(place.x, 3.0 - place.y) * 3.0)
+    assert farthest < way + 0.02 and (place - goal).magnitude < 0.02
 
 
 # ---- what is dragged while time stands still is never lost, and is one act ---------------------------------

@@ -29,6 +29,7 @@ from physicslab.components import Held, Shape, Spring, Transform
 from physicslab.desktop.sessions import Session
 from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import load_scene, save_scene
+from physicslab.languages.language import language
 from physicslab.prefabs import box, circle
 from physicslab.scenes import SCENES
 from physicslab.theme import THEMES
@@ -776,6 +777,18 @@ def test_the_offer_lies_over_no_words(size: tuple[int, int], scale: float, tmp_p
     click(desk, "Discard")
     assert not desk.window.scenes.recovery.offered and "Discard" not in desk.ui.places
     assert desk.sandbox.interface.visible[1] < top and not list(tmp_path.iterdir())
+
+
+def test_an_offer_of_several_sessions_says_so(desk: Desk, tmp_path: Path) -> None:
+    """After *Discard* the older one was offered in the same words, as if it had not been discarded."""
+    offer(tmp_path).leave()
+    recovery = desk.window.scenes.recovery = offer(tmp_path)
+    desk.frames(SETTLED)
+    assert recovery.words.startswith("2 sessions are kept, the last as of ")
+    assert language("de").reword(recovery.words).startswith("2 Sitzungen sind aufgehoben")
+    click(desk, "Discard")
+    assert recovery.words.startswith("Your last session is kept")
+    recovery.leave()
 
 
 def test_a_click_beside_the_offer_leaves_it(desk: Desk, tmp_path: Path) -> None:

@@ -13,6 +13,7 @@ from physicslab.components.mass import Mass
 from physicslab.components.material import Material
 from physicslab.components.name import Name
 from physicslab.components.shape import Shape
+from physicslab.components.slope import find_slope
 from physicslab.components.trail import Trail
 from physicslab.components.transform import Transform
 from physicslab.components.velocity import Velocity
@@ -30,6 +31,8 @@ def plain_name(number: int, components: Iterable[Any]) -> str:
     ('circle 3', 'point 4')
     """
     parts = {type(part): part for part in components}
+    if find_slope(parts) is not None:
+        return _numbered("ramp", number)
     shape = parts.get(Shape)
     return name_by_kinds(number, parts, None if shape is None else shape.kind)
 

@@ -172,6 +172,12 @@ class History:
         """Let the next step or write begin another run: undo takes back one of its ``own`` by itself."""
         self._divided, self._own = True, own
 
+    @property
+    def runs_on(self) -> bool:
+        """Whether the next step extends a run, and does not begin one."""
+        here, line = self._places.here, self._places.line
+        return here > 0 and not self._divided and isinstance(line.entries[line.entry_at(here - 1)], Run)
+
     # ---- going through -------------------------------------------------------------------------------------
 
     def undo(self, *, runs: bool = True) -> str | None:
@@ -374,11 +380,10 @@ class History:
     def _run(self) -> Run:
         """Return the run that a step or a write at the present place extends."""
         self._cut()
-        entries = self._places.line.entries
-        if not entries or not isinstance(entries[-1], Run) or self._divided:
+        if not self.runs_on:
             self._places.line.add(Run(own=self._own))
         self._divided = self._own = False
-        run = entries[-1]
+        run = self._places.line.entries[-1]
         assert isinstance(run, Run)
         return run
 

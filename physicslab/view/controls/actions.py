@@ -55,6 +55,14 @@ def toggle_pause(world: World, window: Window) -> None:
         window.error = ""
 
 
+def step_once(world: World, window: Window) -> None:
+    """Pause, and make one step; undo takes single steps back without the edit before them."""
+    history = window.edits.history
+    if window.hand.entity is None and not history.runs_on:
+        history.divide(own=True)
+    window.pace.queue_step()
+
+
 def clear(world: World, window: Window) -> None:
     """Remove everything, and what the scene says of itself."""
     window.hand.drop(world)

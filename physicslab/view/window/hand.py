@@ -36,6 +36,8 @@ _POSED = 1e-7
 """How far joints must let a body move, or turn, for it to be moved in a pause [m or rad]."""
 _PULLED = 0.3
 """Share of the way to the hand that what joints hold is pulled in a step, lest what it carries swings."""
+_BRAKING = 0.35
+"""Share of its strength with which the hand can bring what joints hold to rest where it is."""
 _THROWN = 0.5
 """Speed [m/s] from which a body that is let go counts as thrown."""
 _MIN_THROW_TIME = 0.03
@@ -294,14 +296,13 @@ class Hand:
         gap = self._path[-1].place - transform.position - arm
         inverse, turning = float(world.bodies.inverse_mass[row]), float(world.bodies.inverse_inertia[row])
         across, carried = arm.perpendicular, world.table(Mass)["mass"][joined_rows(world, row)].sum()
-        wanted = _limited(gap * (_PULLED / coming), self._config.max_throw_speed)
-        moves, strength = velocity.linear + across * velocity.angular, _WEIGHTS * _EARTH * float(carried)
-        pull = Vector2()
-        for change, most in ((wanted, strength), (-moves, 0.5 * strength)):
-            # Across the arm it takes less than m: (1/m + r r/I) J = change.
-            lighter = across.dot(change) * turning / (inverse + turning * arm.dot(arm))
-            force = (change - across * lighter) / (inverse * coming)
-            pull += _limited(force, most)
+        strength = _WEIGHTS * _EARTH * float(carried)
+        fastest = math.sqrt(2.0 * _BRAKING * _WEIGHTS * _EARTH * gap.magnitude)
+        wanted = _limited(gap * (_PULLED / coming), min(fastest, self._config.max_throw_speed))
+        change = wanted - velocity.linear - across * velocity.angular
+        # Across the arm it takes less than m: (1/m + r r/I) J = change.
+        lighter = across.dot(change) * turning / (inverse + turning * arm.dot(arm))
+        pull = _limited((change - across * lighter) / (inverse * coming), strength)
         self._set(world, entity, Held, "pull", pull)
         self._was_moved_by_time = True
 

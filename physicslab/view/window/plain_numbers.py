@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 from physicslab.components import Rod, Rope, Shape, Spring, Transform, Velocity
+from physicslab.components.slope import Slope, find_slope
 from physicslab.ecs.vector import Vector2
 from physicslab.history import Command, SetField
 from physicslab.state.attached import point_of
@@ -12,8 +13,6 @@ from physicslab.world import World
 
 _LENGTHS: dict[type[Any], str] = {Rod: "length", Rope: "length", Spring: "rest_length"}
 """The field of the length of a pendulum's link."""
-_SQUARE = 1e-9
-"""Share of its sides by which a corner of a ramp may not be a right angle, or a side not be level."""
 
 
 def way_of(length: float, degrees: float) -> Vector2:
@@ -93,33 +92,9 @@ def hang(world: World, hanging: Hanging, length: float, angle: float) -> list[Co
     return commands
 
 
-class Slope(NamedTuple):
-    """A fixed wedge that stands on its level side: the foot and the top of its slope [m]."""
-
-    foot: Vector2
-    top: Vector2
-
-    @property
-    def angle(self) -> float:
-        """How steep it is [rad]."""
-        way = self.top - self.foot
-        return math.atan2(abs(way.y), abs(way.x))
-
-
 def slope_of(world: World, body: int) -> Slope | None:
     """Return the slope of a ramp; ``None`` for anything else."""
-    if not world.has(body, Shape) or world.has(body, Velocity):
-        return None
-    shape, transform = world.component(body, Shape), world.component(body, Transform)
-    if shape.kind != "polygon" or len(shape.vertices) != 3 or transform.angle or shape.radius:
-        return None
-    corners = [transform.position + vertex for vertex in shape.vertices]
-    for n, corner in enumerate(corners):
-        for foot, top in ((corners[n - 1], corners[n - 2]), (corners[n - 2], corners[n - 1])):
-            size = (top - foot).magnitude
-            if max(abs(foot.y - corner.y), abs(top.x - corner.x)) <= _SQUARE * size:
-                return Slope(foot, top)
-    return None
+    return find_slope({type(part): part for part in world.components(body)})
 
 
 def incline(world: World, body: int, slope: Slope, angle: float) -> Sequence[Command]:

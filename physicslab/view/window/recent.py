@@ -88,7 +88,10 @@ class Recovery:
             saved = time.localtime(self._left[0].path.stat().st_mtime)
         except (IndexError, OSError):
             return "Your last session is kept"
-        return f"Your last session is kept, as of {time.strftime('%Y-%m-%d %H:%M', saved)}"
+        when = time.strftime("%Y-%m-%d %H:%M", saved)
+        if len(self._left) > 1:
+            return f"{len(self._left)} sessions are kept, the last as of {when}"
+        return f"Your last session is kept, as of {when}"
 
     def restore(self) -> World:
         """Return the world of the session on offer.

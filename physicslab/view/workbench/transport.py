@@ -38,13 +38,7 @@ def build_transport(ui: Ui, rect: Rect, world: World, window: Window) -> None:
             ("Restart", "Restart this scene (Ctrl+R)", file_actions.restart, icons["restart"], _NARROW),
             ("Step back", "Pause, and go back by one step (B)", actions.step_back, icons["back"], _NARROW),
             (play, why, actions.toggle_pause, f"{icons[icon]}  {ui.said(play)}", _WIDE),
-            (
-                "Step",
-                "Pause, and make one step (.)",
-                lambda _, window: window.pace.queue_step(),
-                icons["step"],
-                _NARROW,
-            ),
+            ("Step", "Pause, and make one step (.)", actions.step_once, icons["step"], _NARROW),
         ):
             ui.button(label, tip, action, shown=shown, on=width == _WIDE, size=(width * size, height))
             imgui.same_line()
