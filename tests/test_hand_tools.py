@@ -373,7 +373,7 @@ def test_what_joints_hold_comes_to_rest_where_a_hand_is_that_jumps(way: float) -
     goal = Vector2(3.0 * math.sin(angle), 3.0 - 3.0 * math.cos(angle))
     desk.move(goal.x, goal.y)
     farthest = 0.0
-    for _ in range(60):
+    for _ in range(120):
         desk.frames()
         place = world.component(ball, Transform).position
         farthest = max(farthest, math.atan2(place.x, 3.0 - place.y) * 3.0)

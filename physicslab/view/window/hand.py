@@ -283,8 +283,9 @@ class Hand:
         So it follows as well where a frame takes long, and has many steps.
 
         The force would give the point, if it were free, a velocity towards the hand in place of the one that
-        it has. It is no greater than the hand is strong, and what brakes is half of that: far from the hand,
-        too, a body comes to rest. Joints, walls and floors hold as if it were in no hand.
+        it has, from which it can stop on its way. What pulls and what brakes are each no greater than the hand
+        is strong: out of reach of the hand, too, a body comes to rest. Joints, walls and floors hold as if it
+        were in no hand.
         """
         entity = self.entity
         if entity is None or not world.has(entity, Held) or not world.component(entity, Held).yields:
@@ -299,10 +300,11 @@ class Hand:
         strength = _WEIGHTS * _EARTH * float(carried)
         fastest = math.sqrt(2.0 * _BRAKING * _WEIGHTS * _EARTH * gap.magnitude)
         wanted = _limited(gap * (_PULLED / coming), min(fastest, self._config.max_throw_speed))
-        change = wanted - velocity.linear - across * velocity.angular
-        # Across the arm it takes less than m: (1/m + r r/I) J = change.
-        lighter = across.dot(change) * turning / (inverse + turning * arm.dot(arm))
-        pull = _limited((change - across * lighter) / (inverse * coming), strength)
+        moves, pull = velocity.linear + across * velocity.angular, Vector2()
+        for change in (wanted, -moves):
+            # Across the arm it takes less than m: (1/m + r r/I) J = change.
+            lighter = across.dot(change) * turning / (inverse + turning * arm.dot(arm))
+            pull += _limited((change - across * lighter) / (inverse * coming), strength)
         self._set(world, entity, Held, "pull", pull)
         self._was_moved_by_time = True
 
