@@ -190,12 +190,13 @@ def test_a_file_that_is_written_after_a_change_goes_on_with_the_same_bits(
     change(world)
     world.run(steps=2)
     loaded = read_scene(json.loads(json_text(write_scene(world))))
+    assert world.plan.contacts == "rigid"
     loaded.run(steps=90)
     for _ in range(90):
         world.step()
     ends = []
     for one in (world, loaded):
-        assert one.plan.contacts == "rigid"
+        assert one.plan == world.plan  # soft where most of these steps were made by impulses
         moving = [entity for entity in one.entities() if one.has(entity, Mass)]
         ends.append([(one.component(e, Transform), one.component(e, Velocity)) for e in moving])
     for (place, velocity), (other, its) in zip(*ends, strict=True):
