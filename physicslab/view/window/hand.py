@@ -283,9 +283,9 @@ class Hand:
         So it follows as well where a frame takes long, and has many steps.
 
         The force would give the point, if it were free, a velocity towards the hand in place of the one that
-        it has, from which it can stop on its way. What pulls and what brakes are each no greater than the hand
-        is strong: out of reach of the hand, too, a body comes to rest. Joints, walls and floors hold as if it
-        were in no hand.
+        it has, from which it can stop on its way. What pulls and what brakes are each no greater than the
+        hand is strong: out of reach of the hand, too, a body comes to rest. Joints, walls and floors hold as
+        if it were in no hand.
         """
         entity = self.entity
         if entity is None or not world.has(entity, Held) or not world.component(entity, Held).yields:
